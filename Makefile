@@ -1,0 +1,47 @@
+# Everything that Demoscope needs is set up the first time, in .venv; later calls start at once.
+
+ARGS ?=
+PYTHON ?=
+python := .venv/bin/python
+extras-test := [test]
+extras-bench := [test,bench]
+
+.PHONY: help run test bench clean libraries
+
+help:
+	@echo "make run     open Demoscope; with no display, write one picture of every scene and say where"
+	@echo "             make run ARGS='fish' opens one scene, make run ARGS='list' lists them"
+	@echo "make test    check style and types, then run the tests; ARGS go to pytest"
+	@echo "make bench   measure speed, beside other viewers"
+	@echo "make clean   remove .venv and everything that was built"
+	@echo "PYTHON=...   the Python to use, 3.11 or newer (default: the first one found)"
+
+run: libraries .venv/.ready-run
+	@$(python) -m viewer $(ARGS)
+
+# Mesa then offers no more than OpenGL 3.3, so that newer functions fail here and not on a lecturer's laptop.
+# All three run, whatever fails, and pytest's summary comes last.
+test: libraries .venv/.ready-test
+	@status=0; \
+	$(python) -m ruff check . || status=1; \
+	$(python) -m mypy --strict viewer scenes || status=1; \
+	MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 $(python) -m pytest $(ARGS) || status=1; \
+	exit $$status
+
+bench: libraries .venv/.ready-bench
+	@$(python) -m pytest tests/benchmarks --override-ini=norecursedirs= --timeout=0 --capture=no $(ARGS)
+
+clean:
+	rm -rf .venv build dist captures tests/failures .mypy_cache .pytest_cache .ruff_cache
+	find viewer scenes tests -name __pycache__ -prune -exec rm -rf {} +
+
+libraries: $(python)
+	@.ci/system-libraries $(python)
+
+$(python):
+	@.ci/virtualenv $(PYTHON)
+
+.venv/.ready-%: $(python) pyproject.toml
+	@echo "Installing Demoscope$(extras-$*) and what it needs into .venv; the first time takes a minute or two"
+	@$(python) -m pip install --quiet --disable-pip-version-check --editable '.$(extras-$*)'
+	@touch $@ .venv/.ready-run

@@ -1,0 +1,82 @@
+"""A camera that orbits a point: where a scene starts it, and how a hand moves it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.matrices import Matrix, look_at, perspective
+
+DEGREES_PER_HEIGHT = 180.0
+STEEPEST_PITCH = 89.0
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A pose: turned by ``yaw`` about the vertical, raised by ``pitch``, ``distance`` from ``target``.
+
+    Angles and the vertical field of view in degrees. Yaw 0 looks along -z, yaw 90 along -x.
+    """
+
+    yaw: float = 30.0
+    pitch: float = 20.0
+    distance: float = 4.0
+    target: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    field_of_view: float = 35.0
+
+
+class OrbitCamera:
+    """A pose that drags, pans and zooms, and goes back to where it started."""
+
+    def __init__(self, start: Orbit) -> None:
+        self.start = start
+        self.reset()
+
+    def reset(self) -> None:
+        """Back to the starting pose."""
+        self.pose(self.start)
+
+    def pose(self, pose: Orbit) -> None:
+        """Take ``pose`` over."""
+        self.yaw, self.pitch, self.distance = float(pose.yaw), float(pose.pitch), float(pose.distance)
+        self.target = np.asarray(pose.target, dtype=float)
+        self.field_of_view = float(pose.field_of_view)
+
+    def drag(self, right: float, down: float) -> None:
+        """Turn by a drag given in heights of the picture."""
+        self.yaw = (self.yaw - right * DEGREES_PER_HEIGHT) % 360.0
+        self.pitch = float(np.clip(self.pitch + down * DEGREES_PER_HEIGHT, -STEEPEST_PITCH, STEEPEST_PITCH))
+
+    def pan(self, right: float, down: float) -> None:
+        """Move the target so that it follows a drag given in heights of the picture."""
+        height = 2.0 * self.distance * math.tan(math.radians(self.field_of_view) / 2.0)
+        across, up = self.view()[:3, 0], self.view()[:3, 1]
+        self.target = self.target + height * (down * up - right * across)
+
+    def zoom(self, notches: float) -> None:
+        """Come closer by ``notches`` of a wheel; fractions, as touchpads send them, are welcome."""
+        nearest, farthest = self.start.distance / 20.0, self.start.distance * 20.0
+        self.distance = float(np.clip(self.distance * 0.9 ** notches, nearest, farthest))
+
+    @property
+    def eye(self) -> NDArray[np.float64]:
+        """Where the camera is, (3,)."""
+        yaw, pitch = math.radians(self.yaw), math.radians(self.pitch)
+        away = (math.sin(yaw) * math.cos(pitch), math.sin(pitch), math.cos(yaw) * math.cos(pitch))
+        return np.asarray(self.target + self.distance * np.array(away))
+
+    def view(self) -> Matrix:
+        """World to camera, (4, 4), in the row order that GL reads as columns."""
+        return look_at(self.eye, self.target)
+
+    def projection(self, aspect: float) -> Matrix:
+        """Camera to clip space, (4, 4), for a picture ``aspect`` times as wide as high.
+
+        A picture narrower than a square keeps its horizontal field of view, so nothing is cut off.
+        """
+        half_height = math.tan(math.radians(self.field_of_view) / 2.0) / min(1.0, aspect)
+        field_of_view = math.degrees(2.0 * math.atan(half_height))
+        return perspective(field_of_view, aspect, self.distance / 50.0, self.distance * 50.0)

@@ -1,0 +1,128 @@
+"""Finding scenes: a pack is a folder with ``scenes/``, ``shaders/`` and ``assets/``."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from viewer.engine.fields import nearest
+from viewer.engine.scene import Scene, SceneError
+from viewer.engine.shaders import ShaderFolders
+
+ENTRY_POINTS = "demoscope.packs"
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+@dataclass(frozen=True)
+class SceneEntry:
+    """A scene that could be loaded: its name, its file, and the folders where it looks things up."""
+
+    name: str
+    file: Path
+    pack: Path
+    shaders: ShaderFolders
+
+    def load(self) -> type[Scene]:
+        """Run the file and return its scene; raises SceneError with the file and the line at fault."""
+        module = self._run()
+        found = [thing for thing in vars(module).values()
+                 if inspect.isclass(thing) and issubclass(thing, Scene) and thing.__module__ == module.__name__]
+        if len(found) != 1:
+            raise SceneError(f"{self.file}: one class derived from Scene is expected, not {len(found)}")
+        return found[0]
+
+    def describe(self) -> dict[str, Any]:
+        """Name, one-line description and parameters, ready for JSON."""
+        scene = self.load()
+        parameters = [field.describe() for field in scene.Params.declared.values()]
+        return {"name": self.name, "description": summary(scene), "parameters": parameters}
+
+    def _run(self) -> ModuleType:
+        name = f"demoscope_scene_{self.name}"
+        module = ModuleType(name)
+        module.__file__ = str(self.file)
+        sys.modules[name] = module
+        try:
+            exec(compile(self.file.read_text(encoding="utf-8"), str(self.file), "exec"), module.__dict__)
+        except Exception as error:
+            raise scene_error(self, "cannot be loaded", error) from error
+        return module
+
+
+def summary(scene: type[Scene]) -> str:
+    """The first line of a scene's docstring."""
+    return (inspect.getdoc(scene) or scene.__name__).splitlines()[0]
+
+
+def scene_error(entry: SceneEntry, doing: str, error: BaseException) -> SceneError:
+    """What a scene raised, in one line: where in its file, and what."""
+    line = error.lineno if isinstance(error, SyntaxError) and error.filename == str(entry.file) else None
+    trace = error.__traceback__
+    while trace:
+        if trace.tb_frame.f_code.co_filename == str(entry.file):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    reason = error.msg if isinstance(error, SyntaxError) else str(error)
+    place = f"{entry.file.name}:{line}" if line else str(entry.file)
+    return SceneError(" ".join(f"{entry.name} {doing}: {place}: {type(error).__name__}: {reason}".split()))
+
+
+def builtin_pack() -> Path:
+    """The pack that comes along: inside an installed package, beside it in a checkout."""
+    inside = PACKAGE / "pack"
+    return inside if inside.is_dir() else PACKAGE.parent
+
+
+class Catalog:
+    """The scenes of the packs given, then the built-in one's, then those of installed packs."""
+
+    def __init__(self, packs: Iterable[str | Path] = ()) -> None:
+        self.packs = [_checked(Path(pack)) for pack in packs] + [builtin_pack()]
+
+    def find(self, name: str) -> SceneEntry:
+        """The scene called ``name``; raises SceneError with the nearest name if there is none."""
+        for pack in self.packs:
+            file = pack / "scenes" / f"{name}.py"
+            if name.isidentifier() and file.is_file():
+                return self._entry(file, pack)
+        entries = {entry.name: entry for entry in self.entries()}
+        if name not in entries:
+            raise SceneError(f"unknown scene {name}{nearest(name, tuple(entries))}; "
+                             f"known: {', '.join(entries) or 'none'}")
+        return entries[name]
+
+    def entries(self) -> list[SceneEntry]:
+        """Every scene, by name; of two with one name the earlier pack's."""
+        found: dict[str, SceneEntry] = {}
+        for pack in [*self.packs, *_installed_packs()]:
+            for file in sorted((pack / "scenes").glob("*.py")):
+                if not file.name.startswith("_"):
+                    found.setdefault(file.stem, self._entry(file, pack))
+        return [found[name] for name in sorted(found)]
+
+    def _entry(self, file: Path, pack: Path) -> SceneEntry:
+        folders: Sequence[Path] = dict.fromkeys([pack, *self.packs, builtin_pack()])  # type: ignore[assignment]
+        return SceneEntry(file.stem, file, pack, ShaderFolders(folder / "shaders" for folder in folders))
+
+
+def _checked(pack: Path) -> Path:
+    if not (pack / "scenes").is_dir():
+        raise SceneError(f"pack {pack} has no folder scenes")
+    return pack.resolve()
+
+
+def _installed_packs() -> list[Path]:
+    from importlib.metadata import entry_points
+
+    packs = []
+    for point in entry_points(group=ENTRY_POINTS):
+        module = importlib.util.find_spec(point.value.split(":")[0])
+        if module and module.origin:
+            packs.append(Path(module.origin).parent)
+    return [pack for pack in packs if (pack / "scenes").is_dir()]

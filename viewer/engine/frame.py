@@ -1,0 +1,52 @@
+"""The uniform block that every shader may read: camera, time, light and studio (``lib/frame.glsl``).
+
+``FRAME`` lays the block out by the std140 rules; its names and order are those of the GLSL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike
+
+FRAME_BINDING = 0
+SHADOW_MAP_UNIT = 15
+
+FRAME = np.dtype([
+    ("u_view", "f4", (4, 4)),
+    ("u_projection", "f4", (4, 4)),
+    ("u_view_projection", "f4", (4, 4)),
+    ("u_clip_to_world", "f4", (4, 4)),
+    ("u_world_to_shadow", "f4", (4, 4)),
+    ("u_eye", "f4", 3), ("u_time", "f4"),
+    ("u_resolution", "f4", 2), ("u_frame", "f4"), ("u_shadow_width", "f4"),
+    ("u_key_direction", "f4", 3), ("u_ground_height", "f4"),
+    ("u_center", "f4", 3), ("u_radius", "f4"),
+    ("u_backdrop_low", "f4", 3), ("u_has_ground", "f4"),
+    ("u_backdrop_high", "f4", 3), ("u_padding", "f4"),
+])
+
+
+class FrameBlock:
+    """The block's buffer on the GPU; bind it, then write what a pass needs."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._values = np.zeros((), FRAME)
+        self._buffer = context.buffer(reserve=FRAME.itemsize)
+        self._buffer.label = "Frame"
+
+    def write(self, values: Mapping[str, ArrayLike]) -> None:
+        """Set the fields named in ``values`` and send the whole block."""
+        for name, value in values.items():
+            self._values[name] = value
+        self._buffer.write(self._values.tobytes())
+
+    def bind(self) -> None:
+        """Make it the block that shaders read."""
+        self._buffer.bind_to_uniform_block(FRAME_BINDING)
+
+    def release(self) -> None:
+        """Free the buffer."""
+        self._buffer.release()

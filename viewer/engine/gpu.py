@@ -1,0 +1,141 @@
+"""A scene's arena of GPU objects: it makes, labels and records each one, and frees them all at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike
+
+from viewer.engine.fields import Uniform
+from viewer.engine.program import Program, VertexArray
+from viewer.engine.shaders import Generated, ShaderError, ShaderFolders
+from viewer.errors import DemoscopeError
+
+
+class GpuError(DemoscopeError):
+    """Something that this GPU cannot hold or do."""
+
+
+class Gpu:
+    """What a scene makes its buffers, textures and programs with.
+
+    Nobody frees what came from here but ``release``. ``parameters`` holds the uniforms that every
+    program with a uniform of that name receives; ``casting_shadows`` tells that the drawing under way
+    is the shadow map's, for which programs leave out their fragment shader.
+    """
+
+    def __init__(self, context: moderngl.Context, shaders: ShaderFolders) -> None:
+        self.context = context
+        self.shaders = shaders
+        self.parameters: dict[str, Uniform] = {}
+        self.parameters_revision = 0
+        self.casting_shadows = False
+        self.programs: list[Program] = []
+        self._owned: list[Any] = []
+        self._largest_texture: int = context.info["GL_MAX_TEXTURE_SIZE"]
+
+    def own(self, thing: Any, label: str) -> Any:
+        """Record a GL object made elsewhere, so that ``release`` frees it too."""
+        if label and hasattr(thing, "label"):
+            thing.label = label
+        self._owned.append(thing)
+        return thing
+
+    def share(self, parameters: Mapping[str, Uniform]) -> None:
+        """Give every program these uniforms from now on."""
+        self.parameters = dict(parameters)
+        self.parameters_revision += 1
+
+    def program(self, vertex: str, fragment: str | None = None, *, generated: Generated | None = None) -> Program:
+        """A program from two files under ``shaders/``; raises ShaderError with file and line.
+
+        ``generated`` gives the text of includes that are not files. Without ``fragment`` it can
+        only be captured from, not drawn with.
+        """
+        program = Program(self, vertex, fragment, generated or {})
+        self.programs.append(program)
+        return program
+
+    def buffer(self, data: ArrayLike | bytes | None = None, *, reserve: int = 0, label: str = "") -> moderngl.Buffer:
+        """A buffer with the bytes of ``data``, or with room for ``reserve`` bytes."""
+        if data is None:
+            made = self.context.buffer(reserve=reserve)
+        else:
+            made = self.context.buffer(data if isinstance(data, bytes) else np.ascontiguousarray(data))
+        self.own(made, label)
+        return made
+
+    def texture(self, size: tuple[int, int], components: int, data: ArrayLike | None = None, *,
+                dtype: str = "f1", label: str = "") -> moderngl.Texture:
+        """A 2D texture; raises GpuError where ``size`` is beyond the driver's limit."""
+        self.check_size(size, "a texture")
+        pixels = None if data is None else np.ascontiguousarray(data)
+        made = self.context.texture(size, components, pixels, dtype=dtype)
+        self.own(made, label)
+        return made
+
+    def depth_texture(self, size: tuple[int, int], label: str = "") -> moderngl.Texture:
+        """A depth texture, readable by shaders."""
+        self.check_size(size, "a depth texture")
+        made = self.context.depth_texture(size)
+        self.own(made, label)
+        return made
+
+    def framebuffer(self, color: Sequence[moderngl.Texture | moderngl.Renderbuffer] = (),
+                    depth: moderngl.Texture | moderngl.Renderbuffer | None = None,
+                    label: str = "") -> moderngl.Framebuffer:
+        """A framebuffer that draws into ``color`` and ``depth``."""
+        made = self.context.framebuffer(list(color), depth)
+        self.own(made, label)
+        return made
+
+    def renderbuffer(self, size: tuple[int, int], components: int, *, samples: int = 0, dtype: str = "f1",
+                     label: str = "") -> moderngl.Renderbuffer:
+        """A colour buffer that is drawn into but not sampled."""
+        self.check_size(size, "a picture")
+        made = self.context.renderbuffer(size, components, samples=samples, dtype=dtype)
+        self.own(made, label)
+        return made
+
+    def depth_renderbuffer(self, size: tuple[int, int], *, samples: int = 0, label: str = "") -> moderngl.Renderbuffer:
+        """A depth buffer that is drawn into but not sampled."""
+        made = self.context.depth_renderbuffer(size, samples=samples)
+        self.own(made, label)
+        return made
+
+    def vertex_array(self, program: Program, content: Sequence[tuple[Any, ...]] = (),
+                     index: moderngl.Buffer | None = None, *, mode: int = moderngl.TRIANGLES) -> VertexArray:
+        """Buffers bound to a program's attributes: ``[(buffer, "3f", "in_position"), ...]``.
+
+        A format that ends in ``/i`` steps once per instance. Attributes that the program does not
+        use are skipped. ``index`` holds 32-bit indices.
+        """
+        made = VertexArray(program, tuple(content), index, mode)
+        self.own(made, "")
+        return made
+
+    def check_size(self, size: tuple[int, int], what: str) -> None:
+        """Raise GpuError where ``size`` is empty or larger than the driver takes."""
+        if not all(1 <= extent <= self._largest_texture for extent in size):
+            raise GpuError(f"{what} of {size[0]}x{size[1]} is outside 1x1 to "
+                           f"{self._largest_texture}x{self._largest_texture}, what this GPU takes")
+
+    def refresh(self) -> ShaderError | None:
+        """Bring every program up to date with its files and generated text.
+
+        Returns the first error; a program that has one goes on with what it last had.
+        """
+        errors = [error for program in self.programs if (error := program.refresh())]
+        return errors[0] if errors else None
+
+    def release(self) -> None:
+        """Free everything that was made here, the newest first."""
+        for thing in reversed(self._owned):
+            thing.release()
+        for program in self.programs:
+            program.release()
+        self._owned.clear()
+        self.programs.clear()

@@ -1,0 +1,202 @@
+"""Shader programs that survive bad edits, and the vertex arrays that draw with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.fields import Uniform
+from viewer.engine.frame import FRAME_BINDING, SHADOW_MAP_UNIT
+from viewer.engine.shaders import Generated, ShaderError, Source, explain
+
+if TYPE_CHECKING:
+    from viewer.engine.gpu import Gpu
+
+DEPTH_ONLY = "#version 330 core\nvoid main() {}\n"
+Captured: TypeAlias = tuple[str, ...]
+Stamp: TypeAlias = tuple[tuple[str, int, int], ...]
+
+
+class Variant:
+    """One linked GL program and which parameter values it was last given."""
+
+    def __init__(self, gl: moderngl.Program, fixed_units: Mapping[str, int], blocks: Mapping[str, int]) -> None:
+        self.gl = gl
+        self.revision = -1
+        self.applied: dict[str, Uniform] = {}
+        for name, unit in fixed_units.items():
+            if name in gl:
+                gl[name] = unit
+        for name, binding in blocks.items():
+            if name in gl:
+                gl[name].binding = binding  # type: ignore[union-attr]
+
+    def apply(self, uniforms: Mapping[str, Uniform], place: str) -> None:
+        """Set the uniforms that this program has and that changed; raises ShaderError for a wrong type."""
+        for name, value in uniforms.items():
+            if name not in self.gl or self.applied.get(name) == value:
+                continue
+            try:
+                self.gl[name] = value
+            except Exception as error:
+                raise ShaderError(place, 0, f"uniform {name} is of a type that does not take {value}") from error
+            self.applied[name] = value
+
+
+class Program:
+    """A vertex and a fragment shader, linked for each purpose when it first serves that purpose.
+
+    The purposes are drawing in colour, drawing a shadow map (the fragment shader left out unless it
+    discards), and capturing what the vertex shader computes. ``program["u_name"] = value`` sets a
+    uniform for all of them. After an edit that does not compile, the last good one goes on and
+    ``error`` says what is wrong.
+    """
+
+    def __init__(self, gpu: Gpu, vertex: str, fragment: str | None, generated: Generated) -> None:
+        self.gpu = gpu
+        self.name = fragment or vertex
+        self.error: ShaderError | None = None
+        self.generation = 0
+        self._stages = {"vertex_shader": vertex} | ({"fragment_shader": fragment} if fragment else {})
+        self._generated = generated
+        self._own_uniforms: dict[str, Uniform] = {}
+        self._variants: dict[object, Variant] = {}
+        self._sources = self._flatten()
+        self._stamp = self._now()
+        if fragment:
+            self._variants["colour"] = self._link("colour", self._sources)
+
+    def __setitem__(self, name: str, value: Uniform) -> None:
+        self._own_uniforms[name] = value
+
+    def variant(self, purpose: object) -> Variant:
+        """The GL program for ``"colour"``, ``"depth"`` or a tuple of captured names, uniforms set."""
+        found = self._variants.get(purpose)
+        if found is None:
+            found = self._variants[purpose] = self._link(purpose, self._sources)
+        if found.revision != self.gpu.parameters_revision:
+            found.apply(self.gpu.parameters, self.name)
+            found.revision = self.gpu.parameters_revision
+        found.apply(self._own_uniforms, self.name)
+        return found
+
+    def refresh(self) -> ShaderError | None:
+        """Link anew if a file or generated text changed; returns the error that stands, if any."""
+        stamp = self._now()
+        if stamp == self._stamp:
+            return self.error
+        self._stamp = stamp
+        try:
+            sources = self._flatten()
+            self._stamp = self._now(sources)
+            if not self._same_text(sources):
+                self._replace(sources)
+            self.error = None
+        except ShaderError as error:
+            self.error = error
+        return self.error
+
+    def release(self) -> None:
+        """Free the GL programs."""
+        for variant in self._variants.values():
+            variant.gl.release()
+        self._variants.clear()
+
+    def _replace(self, sources: dict[str, Source]) -> None:
+        purpose: object = "colour" if "fragment_shader" in sources else next(iter(self._variants), ("gl_Position",))
+        fresh = self._link(purpose, sources)
+        try:
+            fresh.apply(self.gpu.parameters, self.name)
+            fresh.apply(self._own_uniforms, self.name)
+        except ShaderError:
+            fresh.gl.release()
+            raise
+        self.release()
+        self._variants = {purpose: fresh}
+        self._sources = sources
+        self.generation += 1
+
+    def _flatten(self) -> dict[str, Source]:
+        return {stage: self.gpu.shaders.flatten(name, self._generated) for stage, name in self._stages.items()}
+
+    def _same_text(self, sources: dict[str, Source]) -> bool:
+        return all(sources[stage].lines == self._sources[stage].lines for stage in sources)
+
+    def _now(self, sources: dict[str, Source] | None = None) -> Stamp:
+        """What tells whether anything changed: each file's time and size, each generated text's hash."""
+        files = {path for source in (sources or self._sources).values() for path in source.files}
+        stamp = [(name, hash(make()), 0) for name, make in self._generated.items()]
+        for path in sorted(files):
+            try:
+                status = path.stat()
+                stamp.append((str(path), status.st_mtime_ns, status.st_size))
+            except OSError:
+                stamp.append((str(path), 0, -1))
+        return tuple(stamp)
+
+    def _link(self, purpose: object, sources: dict[str, Source]) -> Variant:
+        stages: dict[str, Any] = {stage: source.text for stage, source in sources.items()}
+        if isinstance(purpose, tuple):
+            stages = {"vertex_shader": stages["vertex_shader"], "varyings": list(purpose)}
+        elif purpose == "depth" and "discard" not in stages.get("fragment_shader", ""):
+            stages["fragment_shader"] = DEPTH_ONLY
+        try:
+            linked = self.gpu.context.program(**stages)
+        except Exception as error:
+            raise explain(str(error), sources, self.name) from error
+        linked.label = f"{self.name} {purpose}"
+        return Variant(linked, {"u_shadow_map": SHADOW_MAP_UNIT}, {"Frame": FRAME_BINDING})
+
+
+class VertexArray:
+    """Buffers bound to a program; it follows the program through reloads and purposes."""
+
+    def __init__(self, program: Program, content: tuple[tuple[Any, ...], ...], index: moderngl.Buffer | None,
+                 mode: int) -> None:
+        self.program, self.content, self.index, self.mode = program, content, index, mode
+        self._arrays: dict[object, tuple[Variant, moderngl.VertexArray]] = {}
+
+    def render(self, *, vertices: int = -1, instances: int = -1) -> None:
+        """Draw, in colour or into the shadow map as the stage asks for."""
+        purpose = "depth" if self.program.gpu.casting_shadows else "colour"
+        self._bound(purpose).render(self.mode, vertices=vertices, instances=instances)
+
+    def capture(self, varyings: Mapping[str, int], count: int) -> dict[str, NDArray[np.float32]]:
+        """What the vertex shader computes for vertices 0 to ``count`` - 1, by transform feedback.
+
+        ``varyings`` maps each output's name to its number of components; the result holds float32
+        arrays of shape (count,) or (count, components).
+        """
+        width = sum(varyings.values())
+        array = self._bound(tuple(varyings))
+        target = self.program.gpu.context.buffer(reserve=4 * width * count)
+        try:
+            array.transform(target, moderngl.POINTS, vertices=count)
+            rows = np.frombuffer(target.read(), np.float32).reshape(count, width)
+        finally:
+            target.release()
+        starts = np.cumsum([0, *varyings.values()])
+        columns = {name: rows[:, start:start + size] for (name, size), start in zip(varyings.items(), starts[:-1], strict=True)}
+        return {name: np.ascontiguousarray(column if varyings[name] > 1 else column[:, 0]) for name, column in columns.items()}
+
+    def release(self) -> None:
+        """Free the GL vertex arrays; the buffers belong to the arena."""
+        for _, array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
+
+    def _bound(self, purpose: object) -> moderngl.VertexArray:
+        variant = self.program.variant(purpose)
+        known = self._arrays.get(purpose)
+        if known and known[0] is variant:
+            return known[1]
+        if known:
+            known[1].release()
+        index = None if isinstance(purpose, tuple) else self.index
+        made = self.program.gpu.context.vertex_array(variant.gl, list(self.content), index, skip_errors=True)
+        self._arrays[purpose] = (variant, made)
+        return made

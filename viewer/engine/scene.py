@@ -1,0 +1,105 @@
+"""What a scene is: parameters, something to draw, and the numbers and geometry it can tell.
+
+    class Sphere(Scene):
+        \"\"\"The sentence that the menu shows.\"\"\"
+
+        class Params(Parameters):
+            radius: float = slider(1.0, 0.1, 2.0, "Radius")
+
+        def __init__(self, gpu: Gpu, params: Params) -> None: ...
+        def draw(self) -> None: ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from viewer.engine.camera import Orbit
+from viewer.engine.clock import FRAME_SECONDS
+from viewer.engine.gpu import Gpu
+from viewer.engine.params import Parameters
+from viewer.errors import DemoscopeError
+
+Geometry: TypeAlias = dict[str, NDArray[Any]]
+Measurements: TypeAlias = Mapping[str, "float | Curve"]
+
+
+class SceneError(DemoscopeError):
+    """A scene that cannot be loaded, or that raised."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One or more series over a common axis, for a plot and for JSON.
+
+    ``x`` (n,) is named ``x_name``; every array in ``series`` is (n,). ``log_x`` and ``log_y`` ask for
+    logarithmic axes; labels carry the units.
+    """
+
+    x_name: str
+    x: ArrayLike
+    series: Mapping[str, ArrayLike] = field(default_factory=dict)
+    x_label: str = ""
+    y_label: str = ""
+    log_x: bool = False
+    log_y: bool = False
+
+    def lists(self) -> dict[str, list[float]]:
+        """Axis and series by name, as lists of floats."""
+        named = {self.x_name: self.x, **self.series}
+        return {name: [float(value) for value in np.asarray(values).ravel()] for name, values in named.items()}
+
+
+@dataclass(frozen=True)
+class Studio:
+    """The set a scene stands in: what to light and where the floor is.
+
+    ``center`` and ``radius`` bound what the scene draws (the shadow covers that sphere); ``ground`` is
+    the floor's height, None for no floor; ``backdrop`` the sRGB colours low and high behind it all.
+    """
+
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    radius: float = 1.5
+    ground: float | None = -1.0
+    backdrop: tuple[str, str] = ("#c9ced6", "#7f8b9c")
+
+
+class Scene:
+    """Base of every scene. The constructor builds; the arena ``gpu`` frees.
+
+    ``frame`` and ``time`` (seconds) tell the moment that is to be drawn or measured.
+    """
+
+    Params: ClassVar[type[Parameters]] = Parameters
+    camera: ClassVar[Orbit] = Orbit()
+    studio: ClassVar[Studio] = Studio()
+    frame: int = 0
+
+    def __init__(self, gpu: Gpu, params: Any) -> None:
+        self.gpu = gpu
+        self.params = params
+
+    @property
+    def time(self) -> float:
+        """Scene time in seconds."""
+        return self.frame * FRAME_SECONDS
+
+    def update(self, dt: float) -> None:
+        """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""
+
+    def draw(self) -> None:
+        """Draw. Called for the shadow map and for the picture; changes nothing that is simulated."""
+        raise NotImplementedError(f"{type(self).__name__} has no draw()")
+
+    def geometry(self) -> Geometry:
+        """What the GPU made for this frame, as named arrays."""
+        return {}
+
+    def measure(self) -> Measurements:
+        """The numbers a lecturer would point at, and the curves to plot."""
+        return {}

@@ -1,0 +1,60 @@
+"""Stages without a window, for scripts: one picture, or a stage to play with."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.camera import Orbit
+from viewer.engine.catalog import Catalog
+from viewer.engine.context import open_headless
+from viewer.engine.presets import load_preset
+from viewer.engine.stage import DEFAULT_SIZE, Stage
+
+_contexts = threading.local()
+
+
+def shared_context() -> moderngl.Context:
+    """The thread's headless GL context, opened when first asked for; raises ContextError."""
+    if not hasattr(_contexts, "context"):
+        _contexts.context = open_headless()
+    context: moderngl.Context = _contexts.context
+    return context
+
+
+@contextmanager
+def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
+             params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
+             camera: Orbit | None = None, packs: Iterable[str | Path] = ()) -> Iterator[Stage]:
+    """A stage with no window: set, seek, then take pixels, geometry or measurements.
+
+    ``preset`` comes first, then ``params``, whose values are Python values or text. Everything on
+    the GPU is freed at the end of the block. Raises a DemoscopeError for whatever cannot be.
+    """
+    entry = Catalog(packs).find(scene)
+    chosen = load_preset(entry, preset) if preset else None
+    values = {**(chosen.values if chosen else {}), **(params or {})}
+    stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
+    try:
+        pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
+        if pose:
+            stage.pose(pose)
+        yield stage
+    finally:
+        stage.release()
+
+
+def render(scene: str, frame: int = 0, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
+           params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
+           camera: Orbit | None = None, packs: Iterable[str | Path] = ()) -> NDArray[np.uint8]:
+    """One picture of a scene: uint8 (height, width, 4), top row first."""
+    with headless(scene, size=size, samples=samples, params=params, preset=preset, seed=seed, camera=camera,
+                  packs=packs) as stage:
+        stage.seek(frame)
+        return stage.pixels()
