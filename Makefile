@@ -13,7 +13,7 @@ help:
 	@echo "             make run ARGS='fish' opens one scene, make run ARGS='list' lists them"
 	@echo "make test    check style and types, then run the tests; ARGS go to pytest"
 	@echo "make bench   measure speed, beside other viewers"
-	@echo "make clean   remove .venv and everything that was built"
+	@echo "make clean   remove .venv and whatever was built; pictures in captures/ stay"
 	@echo "PYTHON=...   the Python to use, 3.11 or newer (default: the first one found)"
 
 run: libraries .venv/.ready-run
@@ -29,10 +29,10 @@ test: libraries .venv/.ready-test
 	exit $$status
 
 bench: libraries .venv/.ready-bench
-	@$(python) -m pytest tests/benchmarks --override-ini=norecursedirs= --timeout=0 --capture=no $(ARGS)
+	@$(python) -m pytest tests/benchmarks --override-ini=norecursedirs= --capture=no $(ARGS)
 
 clean:
-	rm -rf .venv build dist captures tests/failures .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv build dist tests/failures .mypy_cache .pytest_cache .ruff_cache
 	find viewer scenes tests -name __pycache__ -prune -exec rm -rf {} +
 
 libraries: $(python)

@@ -58,7 +58,7 @@ class RipplingSphere(Scene):
         colouring: str = choice("surface", {
             "surface": "A lit surface", "normal": "The normal's x, y, z as red, green, blue",
             "error": "The angle between the normal and the exact one"}, "What the colours show")
-        error_scale: float = slider(30.0, 0.001, 90.0, "The error at the bright end of the colours", unit="degrees",
+        error_scale: float = slider(45.0, 0.001, 90.0, "The error at the bright end of the colours", unit="degrees",
                                     logarithmic=True)
         wipe: float = slider(0.0, 0.0, 1.0, "Part of the picture, from the right, drawn with exact normals")
         show_normals: bool = toggle(False, "Needles along the normals: orange as chosen, green exact")

@@ -11,7 +11,7 @@ layout(std140) uniform Frame {
     float u_time;              // scene time, in seconds
     vec2 u_resolution;         // the picture, in pixels
     float u_frame;             // scene time, in frames
-    float u_shadow_width;      // how much of the world the shadow map is wide
+    float u_padding;
     vec3 u_key_direction;      // from the scene towards the key light
     float u_ground_height;
     vec3 u_center;             // the sphere that holds the scene: its centre
@@ -19,5 +19,5 @@ layout(std140) uniform Frame {
     vec3 u_backdrop_low;
     float u_has_ground;        // 1 with a floor, 0 without
     vec3 u_backdrop_high;
-    float u_padding;
+    float u_padding_too;
 };

@@ -4,10 +4,10 @@
 #include "lib/shadow.glsl"
 
 const float PI = 3.14159265;
-const vec3 KEY_LIGHT = vec3(2.9, 2.75, 2.5);
-const vec3 FILL_LIGHT = vec3(0.30, 0.38, 0.52);
-const vec3 SKY_LIGHT = vec3(0.42, 0.46, 0.52);
-const vec3 FLOOR_LIGHT = vec3(0.24, 0.22, 0.20);
+const vec3 KEY_LIGHT = vec3(3.1, 2.9, 2.6);
+const vec3 FILL_LIGHT = vec3(0.16, 0.21, 0.30);
+const vec3 SKY_LIGHT = vec3(0.34, 0.38, 0.44);
+const vec3 FLOOR_LIGHT = vec3(0.13, 0.12, 0.12);
 
 // Light mirrored by microscopic facets: the GGX distribution of Walter et al. 2007,
 // with the visibility term of Schlick 1994 and his Fresnel approximation.
@@ -33,7 +33,7 @@ vec3 studio_light(vec3 position, vec3 normal, vec3 albedo, float roughness) {
     light += albedo * FILL_LIGHT * max(dot(normal, fill_direction), 0.0);
 
     if (facing_key > 0.0) {
-        float reaching = key_light_reaching(position, normal, 0.012 * u_radius);
+        float reaching = key_light_on_surface(position, normal);
         vec3 mirrored = vec3(glossy_reflection(normal, u_key_direction, to_eye, roughness));
         light += KEY_LIGHT * facing_key * reaching * (albedo / PI + mirrored);
     }

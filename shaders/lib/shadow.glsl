@@ -1,28 +1,33 @@
-// How much of the key light reaches a place.
-// float key_light_reaching(vec3 position, vec3 normal, float blur): 0 in shadow to 1 lit;
-// blur is the radius, in the world, over which the shadow's edge is softened.
+// How much of the key light reaches a place, from blurred moments of the light's depth:
+// variance shadow maps, Donnelly and Lauritzen 2006. One look-up, an edge without steps.
+// float key_light_on_surface(vec3 position, vec3 normal): 0 in shadow to 1 lit.
+// float key_light_on_floor(vec3 position): the same with an edge that softens away from what casts it.
 #include "lib/frame.glsl"
 
-uniform sampler2DShadow u_shadow_map;
+uniform sampler2D u_shadow_near;   // mean depth and mean squared depth, blurred a little
+uniform sampler2D u_shadow_wide;   // and blurred widely
 
-const int SHADOW_TAPS = 8;
-const float GOLDEN_ANGLE = 2.39996323;
+// The share of the light that passes, at most, among depths with these moments (Chebyshev).
+float share_lit(vec2 moments, float depth) {
+    float variance = max(moments.y - moments.x * moments.x, 2e-5);
+    float behind = depth - moments.x;
+    return behind <= 0.0 ? 1.0 : variance / (variance + behind * behind);
+}
 
-float key_light_reaching(vec3 position, vec3 normal, float blur) {
-    float texel = u_shadow_width / float(textureSize(u_shadow_map, 0).x);
-    float slope = 1.0 - max(dot(normal, u_key_direction), 0.0);
-    vec3 lifted = position + normal * (1.5 * texel + blur * slope);
-    vec3 place = (u_world_to_shadow * vec4(lifted, 1.0)).xyz;
-    if (any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0))))
-        return 1.0;                                     // beyond the map nothing casts a shadow
-    place.z = min(place.z, 1.0);
-    float radius = blur / u_shadow_width;
-    float lit = 0.0;
-    for (int tap = 0; tap < SHADOW_TAPS; ++tap) {       // a spiral of samples, evenly spread (Vogel 1979)
-        float along = sqrt((float(tap) + 0.5) / float(SHADOW_TAPS));
-        float angle = float(tap) * GOLDEN_ANGLE;
-        vec2 offset = radius * along * vec2(cos(angle), sin(angle));
-        lit += texture(u_shadow_map, vec3(place.xy + offset, place.z));
-    }
-    return lit / float(SHADOW_TAPS);
+float key_light_on_surface(vec3 position, vec3 normal) {
+    vec3 place = (u_world_to_shadow * vec4(position + 0.01 * u_radius * normal, 1.0)).xyz;
+    float lit = share_lit(texture(u_shadow_near, place.xy).rg, place.z);
+    return clamp((lit - 0.15) / 0.85, 0.0, 1.0);       // light that leaks where shadows overlap
+}
+
+float key_light_on_floor(vec3 position) {
+    vec3 place = (u_world_to_shadow * vec4(position, 1.0)).xyz;
+    vec2 from_middle = abs(place.xy - 0.5);
+    float outside = smoothstep(0.44, 0.48, max(from_middle.x, from_middle.y));
+    if (outside == 1.0)
+        return 1.0;                                    // beyond the map nothing casts a shadow
+    vec2 wide = texture(u_shadow_wide, place.xy).rg;
+    float height = clamp(2.2 * (place.z - wide.x), 0.0, 1.0);
+    float sharp_edge = share_lit(texture(u_shadow_near, place.xy).rg, place.z);
+    return mix(mix(sharp_edge, share_lit(wide, place.z), 0.25 + 0.75 * height), 1.0, outside);
 }

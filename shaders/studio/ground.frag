@@ -11,9 +11,7 @@ void main() {
     vec3 wall = backdrop(gl_FragCoord.xy);
     float distance_out = length(v_position.xz - u_center.xz) / u_radius;
     float presence = 1.0 - smoothstep(1.0, 6.0, distance_out);
-    float reaching = 1.0;
-    if (distance_out < 4.0 && u_eye.y > u_ground_height)
-        reaching = key_light_reaching(v_position, vec3(0.0, 1.0, 0.0), 0.06 * u_radius);
+    float reaching = key_light_on_floor(v_position);
     vec3 below = vec3(u_center.x, u_ground_height, u_center.z);
     float nearness = 1.0 - smoothstep(0.0, 1.6, length(v_position - below) / u_radius);
     float light = mix(0.30, 1.0, reaching) * (1.0 - 0.25 * nearness);

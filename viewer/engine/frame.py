@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 FRAME_BINDING = 0
-SHADOW_MAP_UNIT = 15
+SHADOW_NEAR_UNIT = 15
+SHADOW_WIDE_UNIT = 14
 
 FRAME = np.dtype([
     ("u_view", "f4", (4, 4)),
@@ -21,11 +22,11 @@ FRAME = np.dtype([
     ("u_clip_to_world", "f4", (4, 4)),
     ("u_world_to_shadow", "f4", (4, 4)),
     ("u_eye", "f4", 3), ("u_time", "f4"),
-    ("u_resolution", "f4", 2), ("u_frame", "f4"), ("u_shadow_width", "f4"),
+    ("u_resolution", "f4", 2), ("u_frame", "f4"), ("u_padding", "f4"),
     ("u_key_direction", "f4", 3), ("u_ground_height", "f4"),
     ("u_center", "f4", 3), ("u_radius", "f4"),
     ("u_backdrop_low", "f4", 3), ("u_has_ground", "f4"),
-    ("u_backdrop_high", "f4", 3), ("u_padding", "f4"),
+    ("u_backdrop_high", "f4", 3), ("u_padding_too", "f4"),
 ])
 
 

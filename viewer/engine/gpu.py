@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import moderngl
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from viewer.engine.fields import Uniform
+from viewer.engine.params import Parameters
 from viewer.engine.program import Program, VertexArray
 from viewer.engine.shaders import Generated, ShaderError, ShaderFolders
 from viewer.errors import DemoscopeError
@@ -31,7 +32,7 @@ class Gpu:
         self.context = context
         self.shaders = shaders
         self.parameters: dict[str, Uniform] = {}
-        self.parameters_revision = 0
+        self.parameters_revision = -1
         self.casting_shadows = False
         self.programs: list[Program] = []
         self._owned: list[Any] = []
@@ -39,15 +40,26 @@ class Gpu:
 
     def own(self, thing: Any, label: str) -> Any:
         """Record a GL object made elsewhere, so that ``release`` frees it too."""
-        if label and hasattr(thing, "label"):
+        if label:
             thing.label = label
         self._owned.append(thing)
         return thing
 
-    def share(self, parameters: Mapping[str, Uniform]) -> None:
-        """Give every program these uniforms from now on."""
-        self.parameters = dict(parameters)
-        self.parameters_revision += 1
+    def share(self, params: Parameters) -> None:
+        """Give every program the parameters' uniforms, as they now are."""
+        if params.revision != self.parameters_revision:
+            self.parameters = params.uniforms()
+            self.parameters_revision = params.revision
+
+    @property
+    def generation(self) -> int:
+        """Grows whenever a program is replaced by an edited one."""
+        return sum(program.generation for program in self.programs)
+
+    @property
+    def reads_time(self) -> bool:
+        """Whether any shader mentions the time."""
+        return any(program.reads_time for program in self.programs)
 
     def program(self, vertex: str, fragment: str | None = None, *, generated: Generated | None = None) -> Program:
         """A program from two files under ``shaders/``; raises ShaderError with file and line.
@@ -133,6 +145,8 @@ class Gpu:
 
     def release(self) -> None:
         """Free everything that was made here, the newest first."""
+        # GL goes back to the framebuffer that was bound, and raises if that one is gone by then.
+        self.context.detect_framebuffer(0).use()
         for thing in reversed(self._owned):
             thing.release()
         for program in self.programs:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
 
 from viewer.engine.fields import (
     Choice,
@@ -30,6 +30,8 @@ from viewer.engine.fields import (
     nearest,
 )
 from viewer.kit.formula import Formula
+
+Snapshot: TypeAlias = tuple[dict[str, Any], dict[str, Field[Any]]]
 
 
 class Parameters:
@@ -79,7 +81,16 @@ class Parameters:
         """Set one parameter to a value of its kind or to the text of one."""
         self.update({name: value})
 
-    def update(self, values: Mapping[str, object]) -> set[str]:
+    def snapshot(self) -> Snapshot:
+        """Every value, to be put back by ``restore``."""
+        return dict(self._values), dict(self._born)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Put every value back to what it was."""
+        self._values, self._born = dict(snapshot[0]), dict(snapshot[1])
+        self.revision += 1
+
+    def update(self, values: Mapping[str, object]) -> frozenset[str]:
         """Set several parameters, all or none, and return the names of those that changed.
 
         Formulas come first, so that the names they bring can be set in the same call. Raises
@@ -96,13 +107,13 @@ class Parameters:
                 raise ParameterError(f"unknown parameter {name}{nearest(name, tuple(fields))}")
             if not isinstance(fields[name], FormulaField):
                 after[name] = fields[name].parse(value)
-        changed = {name for name in values if _differs(fields[name], self._values.get(name), after[name])}
+        changed = frozenset(name for name in values if _differs(fields[name], self._values.get(name), after[name]))
         if changed:
             self._values, self._born = after, born
             self.revision += 1
         return changed
 
-    def reset(self, name: str | None = None) -> set[str]:
+    def reset(self, name: str | None = None) -> frozenset[str]:
         """Back to the default, for one parameter or for all; returns the names that changed."""
         names = [name] if name is not None else list(self.fields)
         return self.update({each: self.field(each).default for each in names if each in self.fields})

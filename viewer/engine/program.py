@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import moderngl
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.fields import Uniform
-from viewer.engine.frame import FRAME_BINDING, SHADOW_MAP_UNIT
+from viewer.engine.frame import FRAME_BINDING, SHADOW_NEAR_UNIT, SHADOW_WIDE_UNIT
 from viewer.engine.shaders import Generated, ShaderError, Source, explain
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ class Program:
         self._variants: dict[object, Variant] = {}
         self._sources = self._flatten()
         self._stamp = self._now()
+        self.reads_time = _mention_time(self._sources.values())
         if fragment:
             self._variants["colour"] = self._link("colour", self._sources)
 
@@ -79,10 +80,11 @@ class Program:
         if found is None:
             found = self._variants[purpose] = self._link(purpose, self._sources)
         if found.revision != self.gpu.parameters_revision:
-            found.apply(self.gpu.parameters, self.name)
             found.revision = self.gpu.parameters_revision
+            found.apply(self.gpu.parameters, self.name)
         found.apply(self._own_uniforms, self.name)
         return found
+
 
     def refresh(self) -> ShaderError | None:
         """Link anew if a file or generated text changed; returns the error that stands, if any."""
@@ -118,6 +120,7 @@ class Program:
         self.release()
         self._variants = {purpose: fresh}
         self._sources = sources
+        self.reads_time = _mention_time(sources.values())
         self.generation += 1
 
     def _flatten(self) -> dict[str, Source]:
@@ -149,7 +152,15 @@ class Program:
         except Exception as error:
             raise explain(str(error), sources, self.name) from error
         linked.label = f"{self.name} {purpose}"
-        return Variant(linked, {"u_shadow_map": SHADOW_MAP_UNIT}, {"Frame": FRAME_BINDING})
+        units = {"u_shadow_near": SHADOW_NEAR_UNIT, "u_shadow_wide": SHADOW_WIDE_UNIT}
+        return Variant(linked, units, {"Frame": FRAME_BINDING})
+
+
+def _mention_time(sources: Iterable[Source]) -> bool:
+    """Whether shaders mention the time anywhere but in the frame block's declaration."""
+    return any(name in line for source in sources
+               for line, (place, _) in zip(source.lines, source.origins, strict=True)
+               if place != "lib/frame.glsl" for name in ("u_time", "u_frame"))
 
 
 class VertexArray:

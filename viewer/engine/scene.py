@@ -70,24 +70,42 @@ class Studio:
 
 
 class Scene:
-    """Base of every scene. The constructor builds; the arena ``gpu`` frees.
-
-    ``frame`` and ``time`` (seconds) tell the moment that is to be drawn or measured.
-    """
+    """Base of every scene. The constructor builds; the arena ``gpu`` frees."""
 
     Params: ClassVar[type[Parameters]] = Parameters
     camera: ClassVar[Orbit] = Orbit()
     studio: ClassVar[Studio] = Studio()
-    frame: int = 0
+
+    gpu: Gpu
+    params: Any
+    reads_time: bool = False
+    _frame: int = 0
 
     def __init__(self, gpu: Gpu, params: Any) -> None:
-        self.gpu = gpu
-        self.params = params
+        """Build everything that will be drawn; ``gpu`` and ``params`` are attributes already."""
+
+    @classmethod
+    def create(cls, gpu: Gpu, params: Parameters) -> Scene:
+        """A scene built in ``gpu``; a constructor need neither call its base nor keep its arguments."""
+        scene = cls.__new__(cls)
+        scene.gpu, scene.params = gpu, params
+        scene.__init__(gpu, params)  # type: ignore[misc]
+        return scene
+
+    @property
+    def frame(self) -> int:
+        """The frame that is to be drawn or measured. Asking marks the scene as one that time moves."""
+        self.reads_time = True
+        return self._frame
 
     @property
     def time(self) -> float:
         """Scene time in seconds."""
         return self.frame * FRAME_SECONDS
+
+    def stand_at(self, frame: int) -> None:
+        """Tell the scene which frame it is; the stage does."""
+        self._frame = frame
 
     def update(self, dt: float) -> None:
         """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""

@@ -15,6 +15,7 @@ from viewer.errors import DemoscopeError
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+["<]([^">]+)[">]')
 VERSION = "#version 330 core"
+GENERATED = "generated/"
 Generated = Mapping[str, Callable[[], str]]
 
 
@@ -27,6 +28,11 @@ class ShaderError(DemoscopeError):
     def __init__(self, place: str, line: int, text: str) -> None:
         self.place, self.line, self.text = place, line, text
         super().__init__(f"{place}:{line}: {text}" if line else f"{place}: {text}")
+
+    @property
+    def generated(self) -> bool:
+        """Whether the fault lies in generated text, such as a compiled formula, rather than in a file."""
+        return self.place.startswith(GENERATED)
 
 
 @dataclass

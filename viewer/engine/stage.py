@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import moderngl
 import numpy as np
@@ -13,13 +13,13 @@ from viewer.engine.camera import Orbit, OrbitCamera
 from viewer.engine.catalog import SceneEntry, scene_error
 from viewer.engine.clock import FRAME_SECONDS, Clock
 from viewer.engine.fields import ParameterError
-from viewer.engine.frame import FrameBlock
 from viewer.engine.gpu import Gpu
+from viewer.engine.painter import Painter
 from viewer.engine.params import Parameters
 from viewer.engine.picture import Picture
+from viewer.engine.presets import Preset
 from viewer.engine.scene import Geometry, Measurements, Scene
 from viewer.engine.shaders import ShaderError
-from viewer.engine.studio import StudioSet
 from viewer.errors import DemoscopeError
 
 Result = TypeVar("Result")
@@ -38,23 +38,23 @@ class Stage:
         self.context = context
         self.entry = entry
         self.clock = Clock()
-        self.gpu_milliseconds: float | None = None
-        self._frame_block = FrameBlock(context)
-        self._house = Gpu(context, entry.shaders)
-        self._picture_arena = Gpu(context, entry.shaders)
-        self._arena: Gpu | None = None
+        self.scene_class = entry.load()
+        self.params: Parameters = self._guard("cannot take its parameters",
+                                              lambda: self.scene_class.Params(params, seed=seed))
+        self.camera = OrbitCamera(self.scene_class.camera)
+        self.painter = Painter(context, entry.shaders, self.scene_class.studio, size, samples)
         try:
-            self.scene_class = entry.load()
-            self.params = self._guard("cannot take its parameters", lambda: self.scene_class.Params(params, seed=seed))
-            self.camera = OrbitCamera(self.scene_class.camera)
-            self.studio = StudioSet(self._house, self.scene_class.studio)
-            self.picture = Picture(self._picture_arena, size, samples)
             self.scene = self._built(self.scene_class, self.params)
         except BaseException:
-            self.release()
+            self.painter.release()
             raise
 
     # What is on
+
+    @property
+    def picture(self) -> Picture:
+        """The picture, with its ``texture``."""
+        return self.painter.picture
 
     @property
     def size(self) -> tuple[int, int]:
@@ -64,42 +64,36 @@ class Stage:
     @property
     def frame(self) -> int:
         """The frame that the scene stands at."""
-        return self.scene.frame
+        return self.clock.frame
 
     def set(self, **values: object) -> None:
         """Set parameters by name, to values or to their text; all of them or, on an error, none."""
         self.update_params(values)
 
-    def update_params(self, values: Mapping[str, object]) -> set[str]:
+    def update_params(self, values: Mapping[str, object]) -> frozenset[str]:
         """Like ``set``, from a mapping; returns the names of the parameters that changed."""
-        before = self._snapshot()
-        changed = self.params.update(values)
-        self._after_change(changed, before)
-        return changed
+        return self._change(lambda: self.params.update(values))
 
-    def reset_params(self, name: str | None = None) -> set[str]:
+    def reset_params(self, name: str | None = None) -> frozenset[str]:
         """Set one parameter, or all, to the default; returns the names that changed."""
-        before = self._snapshot()
-        changed = self.params.reset(name)
-        self._after_change(changed, before)
-        return changed
+        return self._change(lambda: self.params.reset(name))
 
-    def pose(self, pose: Orbit) -> None:
-        """Put the camera there."""
-        self.camera.pose(pose)
+    def apply_preset(self, preset: Preset) -> None:
+        """Take over a preset: its values, the defaults for what it leaves out, and its camera if it has one."""
+        defaults = {name: field.default for name, field in self.params.declared.items()}
+        try:
+            self.update_params({**defaults, **preset.values})
+        except ParameterError as error:
+            raise ParameterError(f"preset {preset.name}: {error}") from error
+        pose = preset.pose(self.scene_class.camera)
+        if pose:
+            self.camera.pose(pose)
 
     def resize(self, size: tuple[int, int], samples: int | None = None) -> None:
         """Draw pictures of another size from now on; raises GpuError beyond the driver's limits."""
-        if size == self.size and samples in (None, self.picture.samples):
-            return
-        arena = Gpu(self.context, self.entry.shaders)
-        try:
-            picture = Picture(arena, size, self.picture.samples if samples is None else samples)
-        except BaseException:
-            arena.release()
-            raise
-        self._picture_arena.release()
-        self._picture_arena, self.picture = arena, picture
+        samples = self.picture.samples if samples is None else samples
+        if (size, samples) != (self.size, self.picture.samples):
+            self.painter.resize(size, samples)
 
     # Time
 
@@ -107,15 +101,17 @@ class Stage:
         """Go to ``frame``: exactly where playing from 0 gets, forwards or backwards."""
         if frame < 0:
             raise ParameterError(f"frame = {frame} is before the first, which is 0")
-        if frame < self.scene.frame and self._simulates:
-            self.rebuild(frame=0)
-        while self._simulates and self.scene.frame < frame:
-            self._step()
-        self.scene.frame = self.clock.frame = frame
+        if self._simulates:
+            if frame < self.clock.frame:
+                self._exchange(self.scene_class, self.params)
+                self._go_to(0)
+            while self.clock.frame < frame:
+                self._simulate_one()
+        self._go_to(frame)
 
     def step(self, frames: int = 1) -> None:
         """Go on by ``frames``, or back where negative."""
-        self.seek(max(0, self.scene.frame + frames))
+        self.seek(max(0, self.clock.frame + frames))
 
     def advance(self, wall_seconds: float) -> int:
         """Go on by as many frames as ``wall_seconds`` of playing ask for; returns how many."""
@@ -129,16 +125,8 @@ class Stage:
     def render(self) -> None:
         """Draw the current frame into the picture."""
         self._share_parameters()
-        self._set_frame_block(self.studio.light_values())
-        self._opaque_state()
-        self.studio.cast_shadow(self._draw)
-        self._set_frame_block(self._camera_values())
-        self.picture.begin()
-        self._opaque_state()
-        self.studio.light()
-        self._draw()
-        self.studio.draw()
-        self.picture.finish()
+        self.painter.paint(self.scene, self.camera, self.clock.frame,
+                           lambda: self._guard("failed in draw", self.scene.draw))
 
     def pixels(self) -> NDArray[np.uint8]:
         """The current frame drawn: uint8 (height, width, 4), top row first."""
@@ -147,47 +135,42 @@ class Stage:
 
     def geometry(self) -> Geometry:
         """What the GPU made for the current frame, by name: see the scene."""
-        return self._off_screen("failed in geometry", lambda: self.scene.geometry())
+        return self._off_screen("failed in geometry", self.scene.geometry)
 
     def measure(self) -> Measurements:
         """The scene's numbers and curves at the current frame."""
-        return self._off_screen("failed in measure", lambda: self.scene.measure())
+        return self._off_screen("failed in measure", self.scene.measure)
 
     # Life
 
-    def rebuild(self, frame: int | None = None) -> None:
-        """Build the scene anew with the present parameters, at ``frame`` or where it stands."""
-        frame = self.scene.frame if frame is None else frame
+    def rebuild(self) -> None:
+        """Build the scene anew with the present parameters, at the frame where it stands."""
         self._exchange(self.scene_class, self.params)
-        self.seek(frame)
+        self._catch_up()
 
     def reload_scene(self) -> None:
         """Read the scene's file again and build it, with the present values as far as they still apply."""
         scene_class = self.entry.load()
-        params = scene_class.Params(seed=self.params.seed)
+        params = self._guard("cannot take its parameters", lambda: scene_class.Params(seed=self.params.seed))
         for name, value in self.params.stored().items():
             try:
                 params.update({name: value})
             except ParameterError:
                 continue
-        frame = self.scene.frame
         self._exchange(scene_class, params)
         self.scene_class, self.params = scene_class, params
         self.camera.start = scene_class.camera
-        self._set_studio(scene_class)
-        self.seek(frame)
+        self.painter.furnish(scene_class.studio)
+        self._catch_up()
 
     def refresh_shaders(self) -> ShaderError | None:
-        """Take over edited shader files and changed formulas; returns the error that stands, if any."""
-        errors = [arena.refresh() for arena in (self._arena, self._house, self._picture_arena) if arena]
-        return next(filter(None, errors), None)
+        """Take over edited shader files; returns the error that stands, if any."""
+        return self.scene.gpu.refresh() or self.painter.refresh()
 
     def release(self) -> None:
         """Free everything on the GPU."""
-        for arena in (self._arena, self._house, self._picture_arena):
-            if arena:
-                arena.release()
-        self._frame_block.release()
+        self.scene.gpu.release()
+        self.painter.release()
 
     # Inside
 
@@ -195,27 +178,24 @@ class Stage:
     def _simulates(self) -> bool:
         return type(self.scene).update is not Scene.update
 
-    def _snapshot(self) -> tuple[Parameters, dict[str, Any]]:
-        return self.params, self.params.stored()
-
-    def _after_change(self, changed: set[str], before: tuple[Parameters, dict[str, Any]]) -> None:
-        if not changed:
-            return
+    def _change(self, change: Callable[[], frozenset[str]]) -> frozenset[str]:
+        """Make a change to the parameters felt, or, if the scene or a shader cannot follow, undo it."""
+        before = self.params.snapshot()
+        changed = change()
         try:
-            if any(name in self.params.fields and self.params.field(name).rebuild for name in changed):
+            if any(self.params.field(name).rebuild for name in changed if name in self.params.fields):
                 self.rebuild()
-            elif self._arena:
+            elif changed:
                 self._share_parameters()
-                error = self._arena.refresh()
-                if error and error.place.startswith("generated/"):
+                error = self.scene.gpu.refresh()
+                if error and error.generated:
                     raise error
         except DemoscopeError:
-            self.params.update({name: value for name, value in before[1].items() if name in self.params.fields
-                                or name in before[0].declared})
+            self.params.restore(before)
             self._share_parameters()
-            if self._arena:
-                self._arena.refresh()
+            self.scene.gpu.refresh()
             raise
+        return changed
 
     def _guard(self, doing: str, work: Callable[[], Result]) -> Result:
         """Run the scene's own code; whatever it raises becomes one line that says where."""
@@ -229,68 +209,42 @@ class Stage:
     def _built(self, scene_class: type[Scene], params: Parameters) -> Scene:
         """A new scene in an arena of its own; the arena is freed again if the scene fails to build."""
         arena = Gpu(self.context, self.entry.shaders)
-        arena.share(params.uniforms())
-
-        def build() -> Scene:
-            scene = scene_class.__new__(scene_class)
-            scene.gpu, scene.params = arena, params
-            scene.__init__(arena, params)  # type: ignore[misc]
-            return scene
-
+        arena.share(params)
+        self.painter.set_moment(self.camera, self.clock.frame)
         self.picture.use()
         try:
-            scene = self._guard("failed to build", build)
+            return self._guard("failed to build", lambda: scene_class.create(arena, params))
         except BaseException:
             arena.release()
             raise
-        self._arena = arena
-        self._shared_revision = params.revision
-        return scene
 
     def _exchange(self, scene_class: type[Scene], params: Parameters) -> None:
-        former = self._arena
+        former = self.scene
         self.scene = self._built(scene_class, params)
-        if former:
-            former.release()
+        former.gpu.release()
 
-    def _set_studio(self, scene_class: type[Scene]) -> None:
-        if scene_class.studio != self.studio.plan:
-            self._house.release()
-            self.studio = StudioSet(self._house, scene_class.studio)
+    def _catch_up(self) -> None:
+        """Bring a scene that was just built to the clock's frame."""
+        frame = self.clock.frame
+        if self._simulates:
+            self._go_to(0)
+        self.seek(frame)
 
-    def _step(self) -> None:
-        self.scene.frame += 1
+    def _go_to(self, frame: int) -> None:
+        self.clock.frame = frame
+        self.scene.stand_at(frame)
+
+    def _simulate_one(self) -> None:
+        self._go_to(self.clock.frame + 1)
         self._share_parameters()
-        self._set_frame_block(self._camera_values())
+        self.painter.set_moment(self.camera, self.clock.frame)
         self._guard("failed in update", lambda: self.scene.update(FRAME_SECONDS))
-
-    def _draw(self) -> None:
-        self._guard("failed in draw", self.scene.draw)
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
         self._share_parameters()
-        self._set_frame_block(self._camera_values())
+        self.painter.set_moment(self.camera, self.clock.frame)
         self.picture.use()
         return self._guard(doing, work)
 
     def _share_parameters(self) -> None:
-        if self._arena and self._shared_revision != self.params.revision:
-            self._arena.share(self.params.uniforms())
-            self._shared_revision = self.params.revision
-
-    def _opaque_state(self) -> None:
-        self.context.enable_only(moderngl.DEPTH_TEST)
-        self.context.depth_func = "<"
-
-    def _set_frame_block(self, camera: Mapping[str, Any]) -> None:
-        width, height = self.size
-        self._frame_block.write({
-            **self.studio.frame_values(), **camera, "u_time": self.scene.frame * FRAME_SECONDS,
-            "u_frame": self.scene.frame, "u_resolution": (width, height)})
-        self._frame_block.bind()
-
-    def _camera_values(self) -> dict[str, Any]:
-        view, projection = self.camera.view(), self.camera.projection(self.size[0] / self.size[1])
-        both = view @ projection
-        return {"u_view": view, "u_projection": projection, "u_view_projection": both,
-                "u_clip_to_world": np.linalg.inv(both), "u_eye": self.camera.eye}
+        self.scene.gpu.share(self.params)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import moderngl
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from viewer.engine.fields import Color
-from viewer.engine.frame import SHADOW_MAP_UNIT
 from viewer.engine.gpu import Gpu
-from viewer.engine.matrices import look_at, orthographic
+from viewer.engine.matrices import Matrix, look_at, orthographic
 from viewer.engine.scene import Studio
+from viewer.engine.shadow import ShadowMap
 
-SHADOW_SIZE = 1024
 KEY_DIRECTION = np.array([-0.45, 0.80, 0.40]) / np.linalg.norm([-0.45, 0.80, 0.40])
 CLIP_TO_TEXTURE = np.array([[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 0.5, 0], [0.5, 0.5, 0.5, 1]])
 
@@ -25,10 +22,7 @@ class StudioSet:
     def __init__(self, gpu: Gpu, plan: Studio) -> None:
         self.gpu = gpu
         self.plan = plan
-        self._depth = gpu.depth_texture((SHADOW_SIZE, SHADOW_SIZE), "shadow map")
-        self._depth.compare_func = "<="
-        self._depth.repeat_x = self._depth.repeat_y = False
-        self._shadow = gpu.framebuffer((), self._depth, "shadow map")
+        self.shadow = ShadowMap(gpu, self._world_to_shadow(), plan.ground)
         backdrop = gpu.program("studio/screen.vert", "studio/backdrop.frag")
         ground = gpu.program("studio/ground.vert", "studio/ground.frag")
         self._backdrop = gpu.vertex_array(backdrop)
@@ -39,8 +33,7 @@ class StudioSet:
         low, high = (Color(name, "").uniform(Color(name, "").default) for name in self.plan.backdrop)
         height = self.plan.ground
         return {
-            "u_world_to_shadow": self._light_view_projection() @ CLIP_TO_TEXTURE,
-            "u_shadow_width": 2.0 * self.plan.radius,
+            "u_world_to_shadow": self._world_to_shadow(),
             "u_key_direction": KEY_DIRECTION, "u_center": self.plan.center, "u_radius": self.plan.radius,
             "u_ground_height": height or 0.0, "u_has_ground": float(height is not None),
             "u_backdrop_low": low, "u_backdrop_high": high,
@@ -54,20 +47,6 @@ class StudioSet:
         return {"u_view": view, "u_projection": projection, "u_view_projection": both,
                 "u_clip_to_world": np.linalg.inv(both), "u_eye": eye}
 
-    def cast_shadow(self, draw: Callable[[], None]) -> None:
-        """Fill the shadow map with what ``draw`` draws; the frame block holds ``light_values``."""
-        self._shadow.use()
-        self._shadow.clear(depth=1.0)
-        self.gpu.casting_shadows = True
-        try:
-            draw()
-        finally:
-            self.gpu.casting_shadows = False
-
-    def light(self) -> None:
-        """Let shaders read the shadow map."""
-        self._depth.use(SHADOW_MAP_UNIT)
-
     def draw(self) -> None:
         """Fill what the scene left empty: the floor, then the backdrop behind everything."""
         context = self.gpu.context
@@ -78,12 +57,12 @@ class StudioSet:
         self._backdrop.render(vertices=3)
         context.depth_func = "<"
 
-    def _light_view(self) -> NDArray[np.float64]:
+    def _light_view(self) -> Matrix:
         center = np.asarray(self.plan.center, float)
         return look_at(center + 2.0 * self.plan.radius * KEY_DIRECTION, center)
 
-    def _light_projection(self) -> NDArray[np.float64]:
+    def _light_projection(self) -> Matrix:
         return orthographic(self.plan.radius, self.plan.radius, 3.0 * self.plan.radius)
 
-    def _light_view_projection(self) -> NDArray[np.float64]:
-        return self._light_view() @ self._light_projection()
+    def _world_to_shadow(self) -> Matrix:
+        return self._light_view() @ self._light_projection() @ CLIP_TO_TEXTURE

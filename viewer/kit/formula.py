@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit.formula_calculus import derivative
+from viewer.kit.formula_complaints import shortened
 from viewer.kit.formula_glsl import GlslWriter
 from viewer.kit.formula_graph import Graph, Node, compute, prune
 from viewer.kit.formula_syntax import Parser
@@ -57,8 +58,8 @@ class Formula:
 
         The result has the common shape of everything given. It is float32 if every array used is float32,
         otherwise float64; a NumPy scalar if all are scalars. Where a function has no real value the result
-        is NaN or infinite, without a warning. Raises FormulaError for a variable that is missing or is no
-        real number, and for shapes that do not fit.
+        is NaN or infinite, without a warning; GLSL leaves it undefined there. Raises FormulaError for a
+        variable that is missing or is no real number, and for shapes that do not fit.
         """
         shape = _common_shape(arrays)
         values = {name: _real(name, arrays[name]) for name in self._check_given(arrays)}
@@ -91,7 +92,7 @@ class Formula:
     def _check_given(self, arrays: Mapping[str, ArrayLike]) -> tuple[str, ...]:
         missing = [name for name in self.variables if name not in arrays]
         if missing:
-            raise FormulaError(f"no value for {', '.join(missing)} in {self.text}")
+            raise FormulaError(f"no value for {', '.join(missing)} in {shortened(self.text)}")
         return self.variables
 
 
@@ -165,7 +166,9 @@ def _block_of(value: FloatArray, block: tuple[slice, ...], dimensions: int) -> F
     return value if spread else value[block]
 
 
-def _evaluate_nodes(nodes: Sequence[Node], variables: Mapping[str, FloatArray], dtype: np.dtype[Any]) -> FloatArray:
+def _evaluate_nodes(
+    nodes: Sequence[Node], variables: Mapping[str, FloatArray], dtype: np.dtype[Any]
+) -> FloatArray:
     """The value of the last node; every other value is dropped after its last use."""
     last_use = {argument: index for index, node in enumerate(nodes) for argument in node.arguments}
     values: dict[int, FloatArray] = {}

@@ -6,6 +6,8 @@ that is exactly 0 removes its product, whatever the other factor is.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from viewer.kit.formula_graph import Graph, is_representable
 
 LONGEST_SORTED_PRODUCT = 8
@@ -34,25 +36,27 @@ class Algebra:
         return self.graph.apply("negate", a)
 
     def add(self, a: int, b: int) -> int:
-        if a == self.zero:
-            return b
-        if b == self.zero:
-            return a
-        if a == b:
-            return self.multiply(self.number(2.0), a)
+        if self.zero in (a, b):
+            return b if a == self.zero else a
         if self._parts(b)[0] == "negate":
             return self.subtract(a, self._parts(b)[1][0])
         if self._parts(a)[0] == "negate":
             return self.subtract(b, self._parts(a)[1][0])
+        (first, a_rest), (second, b_rest) = self._coefficient(a), self._coefficient(b)
+        if a_rest == b_rest != self.one:
+            return self.multiply(self.number(first + second), a_rest)
         return self.graph.apply("add", a, b)
 
     def subtract(self, a: int, b: int) -> int:
-        if b == self.zero:
-            return a
-        if a == self.zero:
-            return self.negate(b)
+        if self.zero in (a, b):
+            return self.negate(b) if a == self.zero else a
         if self._parts(b)[0] == "negate":
             return self.add(a, self._parts(b)[1][0])
+        if self._parts(a)[0] == "negate":
+            return self.negate(self.add(self._parts(a)[1][0], b))
+        (first, a_rest), (second, b_rest) = self._coefficient(a), self._coefficient(b)
+        if a_rest == b_rest != self.one:
+            return self.multiply(self.number(first - second), a_rest)
         return self.graph.apply("subtract", a, b)
 
     def multiply(self, a: int, b: int) -> int:
@@ -70,7 +74,7 @@ class Algebra:
         if self._parts(b)[0] == "divide":
             numerator, denominator = self._parts(b)[1]
             return self.divide(self.multiply(a, numerator), denominator)
-        return self._sorted_product(self._factors(a) + self._factors(b), a, b)
+        return self._sorted_product(a, b)
 
     def divide(self, a: int, b: int) -> int:
         if a == self.zero or b == self.one:
@@ -124,7 +128,7 @@ class Algebra:
         return (first, arguments[1]) if first else (1.0, index)
 
     def _factors(self, index: int) -> list[int]:
-        """The factors of a product, left to right; a long product counts as one factor."""
+        """The factors of a product without its coefficient; a long product counts as one factor."""
         factors: list[int] = []
         rest = index
         while self._parts(rest)[0] == "multiply" and len(factors) < LONGEST_SORTED_PRODUCT:
@@ -132,13 +136,29 @@ class Algebra:
             factors.insert(0, last)
         return [rest, *factors]
 
-    def _sorted_product(self, factors: list[int], a: int, b: int) -> int:
+    def _sorted_product(self, a: int, b: int) -> int:
         """The product with its number first, then names, then the rest, each in the order found."""
-        if len(factors) > LONGEST_SORTED_PRODUCT:
+        (first, a_rest), (second, b_rest) = self._coefficient(a), self._coefficient(b)
+        factors = self._factors(a_rest) + self._factors(b_rest)
+        if len(factors) > LONGEST_SORTED_PRODUCT or not is_representable(first * second):
             return self.graph.apply("multiply", a, b)
-        rank = {"number": 0, "variable": 1}
-        ordered = sorted(factors, key=lambda factor: rank.get(self.graph[factor].operation, 2))
-        product = ordered[0]
-        for factor in ordered[1:]:
-            product = factor if product == self.one else self.graph.apply("multiply", product, factor)
-        return product
+        factors = self._collected(factor for factor in factors if factor != self.one)
+        factors.sort(key=lambda factor: self.graph[factor].operation != "variable")
+        product = factors[0] if factors else self.one
+        for factor in factors[1:]:
+            product = self.graph.apply("multiply", product, factor)
+        coefficient = first * second
+        if coefficient == 1.0 or product == self.one:
+            return product if coefficient == 1.0 else self.number(coefficient)
+        return self.graph.apply("multiply", self.number(coefficient), product)
+
+    def _collected(self, factors: Iterable[int]) -> list[int]:
+        """The factors with equal ones gathered into powers, where the exponents are natural numbers."""
+        exponents: dict[int, float] = {}
+        for factor in factors:
+            operation, arguments = self._parts(factor)
+            exponent = self.graph.value(arguments[1]) if operation == "power" else None
+            natural = exponent is not None and exponent > 0 and exponent == int(exponent)
+            base, count = (arguments[0], exponent or 0.0) if natural else (factor, 1.0)
+            exponents[base] = exponents.get(base, 0.0) + count
+        return [self.power(base, self.number(count)) for base, count in exponents.items()]

@@ -57,9 +57,8 @@ def _partial(algebra: Algebra, index: int, position: int) -> int:
     if node.operation in NOISES:
         return _noise_partial(algebra, node, position)
     rule = PARTIALS[node.operation]
-    return rule[position](algebra, index, *node.arguments) if isinstance(rule, tuple) else rule(
-        algebra, index, *node.arguments
-    )
+    chosen = rule[position] if isinstance(rule, tuple) else rule
+    return chosen(algebra, index, *node.arguments)
 
 
 def _noise_partial(a: Algebra, node: Node, position: int) -> int:
@@ -94,6 +93,11 @@ def _sqrt(a: Algebra, index: int, arguments: Sequence[int], slopes: Sequence[int
 def _cbrt(a: Algebra, index: int, arguments: Sequence[int], slopes: Sequence[int]) -> int:
     square = a.power(index, a.number(2.0))
     return a.zero_where_zero(index, a.divide(slopes[0], a.multiply(a.number(3.0), square)))
+
+
+def _multiply(a: Algebra, index: int, arguments: Sequence[int], slopes: Sequence[int]) -> int:
+    first = a.multiply(slopes[0], arguments[1])
+    return a.add(first, a.multiply(arguments[0], slopes[1]))
 
 
 def _divide(a: Algebra, index: int, arguments: Sequence[int], slopes: Sequence[int]) -> int:
@@ -144,6 +148,7 @@ WHOLE_RULES: dict[str, Callable[[Algebra, int, Sequence[int], Sequence[int]], in
     "length": _length,
     "sqrt": _sqrt,
     "cbrt": _cbrt,
+    "multiply": _multiply,
     "divide": _divide,
     "smoothstep": _smoothstep,
     "power": _power,
@@ -155,7 +160,6 @@ PARTIALS: dict[str, Rule | tuple[Rule, ...]] = {
     "negate": lambda a, f, u: a.number(-1.0),
     "add": (lambda a, f, u, v: a.one, lambda a, f, u, v: a.one),
     "subtract": (lambda a, f, u, v: a.one, lambda a, f, u, v: a.number(-1.0)),
-    "multiply": (lambda a, f, u, v: v, lambda a, f, u, v: u),
     "mod": (
         lambda a, f, u, v: a.one,
         lambda a, f, u, v: a.negate(a.call("floor", a.divide(u, v))),

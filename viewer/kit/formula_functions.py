@@ -32,16 +32,18 @@ class Signature(NamedTuple):
         return f"{self.least} to {self.most} arguments"
 
 
-ONE_ARGUMENT = (
-    "sin cos tan asin acos atan sinh cosh tanh exp log log2 sqrt cbrt abs sign floor ceil fract round"
-).split()
+NAMED_ALIKE = (
+    *("sin", "cos", "tan", "sinh", "cosh", "tanh"),
+    *("exp", "log", "log2", "sqrt", "cbrt", "floor", "ceil"),
+)
+ONE_ARGUMENT = (*NAMED_ALIKE, "asin", "acos", "atan", "abs", "sign", "fract", "round")
 
 FUNCTIONS: dict[str, Signature] = {
     **dict.fromkeys(ONE_ARGUMENT, Signature(1, 1)),
-    **dict.fromkeys(["atan2", "step", "pow", "mod"], Signature(2, 2)),
-    **dict.fromkeys(["clamp", "mix", "smoothstep"], Signature(3, 3)),
-    **dict.fromkeys(["min", "max"], Signature(2, None)),
-    **dict.fromkeys(["noise", "turbulence"], Signature(1, 3)),
+    **dict.fromkeys(("atan2", "step", "pow", "mod"), Signature(2, 2)),
+    **dict.fromkeys(("clamp", "mix", "smoothstep"), Signature(3, 3)),
+    **dict.fromkeys(("min", "max"), Signature(2, None)),
+    **dict.fromkeys(("noise", "turbulence"), Signature(1, 3)),
     "length": Signature(1, None),
 }
 CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e}
@@ -111,15 +113,13 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
     "or": _as_number(np.logical_or),
     "not": _as_number(np.logical_not),
     "choose": lambda condition, chosen, otherwise: np.where(condition != 0, chosen, otherwise),
-    **{name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log log2 sqrt cbrt".split()},
+    **{name: getattr(np, name) for name in NAMED_ALIKE},
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
     "atan2": np.arctan2,
     "abs": np.abs,
     "sign": np.sign,
-    "floor": np.floor,
-    "ceil": np.ceil,
     "fract": lambda value: value - np.floor(value),
     "round": np.rint,
     "min": np.minimum,

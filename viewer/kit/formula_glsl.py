@@ -21,6 +21,7 @@ from viewer.kit.formula_text import (
     COMPARING,
     EQUALITY,
     OR,
+    POWER,
     PRODUCT,
     SIGN,
     SUM,
@@ -31,7 +32,7 @@ from viewer.kit.formula_text import (
 
 LONGEST_INLINE = 72
 NOISE_INCLUDE = '#include "lib/noise.glsl"\n'
-FUNCTION_NAME = re.compile(r"(?!gl_)(?!.*__)[A-Za-z][A-Za-z0-9_]*")
+FUNCTION_NAME = re.compile(r"(?!gl_)(?!.*__)[A-Za-z](?:[A-Za-z0-9_]*[A-Za-z0-9])?")
 BUILT_IN = {"round": "roundEven"}
 PRODUCT_WRITTEN_OUT = 4
 
@@ -164,7 +165,7 @@ class GlslWriter:
 
     def _edges_ascend(self, node: Node) -> bool:
         low, high = (self.graph.value(edge) for edge in node.arguments[:2])
-        return low is not None and high is not None and np.float32(low) < np.float32(high)
+        return low is not None and high is not None and bool(np.float32(low) < np.float32(high))
 
     def _choice(self, node: Node) -> Written:
         condition = self._condition(node.arguments[0]).at_least(WHOLE)
@@ -195,11 +196,12 @@ class GlslWriter:
             return Written(f"{name}({_listed(operands)})", WHOLE)
         size = abs(whole)
         if size <= PRODUCT_WRITTEN_OUT:
-            product = Written(" * ".join([operands[0].at_least(PRODUCT + 1)] * size), PRODUCT if size > 1 else WHOLE)
+            base_text = operands[0].at_least(POWER)
+            product = Written(" * ".join([base_text] * size), PRODUCT if size > 1 else WHOLE)
         else:
             name = self._helper(f"power_{size}", power_helper(size))
             product = Written(f"{name}({operands[0].text})", WHOLE)
-        return product if whole > 0 else Written(f"1.0 / {product.at_least(PRODUCT + 1)}", PRODUCT)
+        return product if whole > 0 else Written(f"1.0 / {product.at_least(POWER)}", PRODUCT, True)
 
     def _noise(self, node: Node) -> Written:
         """A call for the value alone; if derivatives are needed too, one call gives all of an order."""

@@ -67,6 +67,8 @@ class Graph:
             return self.number(result) if is_representable(result) else self._insert(node)
         if operation == "power" and values[1] in (0.0, 1.0):
             return arguments[0] if values[1] else self.number(1.0)
+        if operation == "power" and values[0] == math.e:
+            return self.apply("exp", arguments[1])
         return self._insert(node)
 
     def include(self, nodes: Sequence[Node]) -> list[int]:

@@ -6,9 +6,9 @@ power, and an operand goes to the neighbour that binds it more tightly.
 
 from __future__ import annotations
 
-import difflib
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple
 
+from viewer.kit import formula_complaints as complaints
 from viewer.kit.formula_functions import CONSTANTS, FUNCTIONS
 from viewer.kit.formula_graph import Graph, constant_result, is_representable
 from viewer.kit.formula_tokens import OPERATOR_WORDS, FormulaError, Token, tokenize
@@ -69,12 +69,16 @@ class Parser:
         """The node of the whole formula."""
         operand = self._expression(0)
         if self._next.kind != "end":
-            self._refuse_leftover()
+            raise complaints.leftover(self._next, self._before)
         return operand.node
 
     @property
     def _next(self) -> Token:
         return self.tokens[self._at]
+
+    @property
+    def _before(self) -> Token:
+        return self.tokens[self._at - 1]
 
     def _take(self) -> Token:
         token = self.tokens[self._at]
@@ -85,7 +89,7 @@ class Parser:
         """An operand and every operator after it that binds more tightly than ``binding``."""
         self._recursion += 1
         if self._recursion > DEEPEST_RECURSION:
-            self._refuse_nesting(self._next)
+            raise _too_nested(self._next)
         left = self._operand()
         while BINDING.get(self._next.text, 0) > binding:
             left = self._extend(left, self._take())
@@ -96,7 +100,7 @@ class Parser:
         """An expression one level deeper."""
         self._nesting += 1
         if self._nesting > DEEPEST_NESTING:
-            self._refuse_nesting(opening)
+            raise _too_nested(opening)
         operand = self._expression(binding)
         self._nesting -= 1
         return operand
@@ -127,16 +131,16 @@ class Parser:
     def _choice(self, chosen: Operand, word: Token) -> Operand:
         condition = self._nested(word, CHOICE)
         if self._next.text != "else":
-            self._refuse_missing_operator()
-            raise FormulaError(
-                f"if at {word.position} has no else; write a if condition else b", word.position
-            )
+            missing = complaints.missing_operator(self._next, self._before)
+            place = word.position
+            raise missing or FormulaError(f"if at {place} has no else; write a if condition else b", place)
         otherwise = self._nested(self._take(), CHOICE - 1)
         node = self._combine("choose", [condition, chosen, otherwise], chosen.start, otherwise.end)
         return Operand(node, chosen.start, otherwise.end)
 
     def _operand(self) -> Operand:
         """A number, a name, a call, a parenthesis, or a sign and its operand."""
+        before = self._before if self._at else None
         token = self._take()
         if token.kind == "number":
             return self._number(token)
@@ -149,11 +153,7 @@ class Parser:
             return Operand(inside.node, token.start, closing.end)
         if token.kind == "name" and token.text not in OPERATOR_WORDS:
             return self._call(token) if self._next.text == "(" else self._name(token)
-        before = self.tokens[self.tokens.index(token) - 1] if token.start or token.kind == "end" else None
-        after = f" after {before}" if before is not None and before is not token else ""
-        raise FormulaError(
-            f"expected a number, a name or ( at {token.position}{after}, found {token}", token.position
-        )
+        raise complaints.misplaced(token, before)
 
     def _signed(self, sign: Token, operand: Operand) -> Operand:
         if sign.text == "+":
@@ -166,20 +166,15 @@ class Parser:
     def _number(self, token: Token) -> Operand:
         value = float(token.text)
         if not is_representable(value):
-            raise FormulaError(
-                f"{_shortened(token.text)} at {token.position} is too large for a number", token.position
-            )
+            shown, place = complaints.shortened(token.text), token.position
+            raise FormulaError(f"{shown} at {place} is too large for a number", place)
         return Operand(self.graph.number(value), token.start, token.end)
 
     def _name(self, token: Token) -> Operand:
         if token.text in CONSTANTS:
             return Operand(self.graph.number(CONSTANTS[token.text]), token.start, token.end)
         if token.text in FUNCTIONS:
-            following = self._next.text if self._next.kind in ("name", "number") else "x"
-            example = f"{token.text}({following})" if FUNCTIONS[token.text].least == 1 else f"{token.text}(...)"
-            raise FormulaError(
-                f"{token.text} at {token.position} needs its arguments in parentheses: {example}", token.position
-            )
+            raise complaints.bare_function(token, self._next)
         self.names.add(token.text)
         if len(self.names) > MOST_NAMES:
             raise FormulaError(
@@ -191,7 +186,7 @@ class Parser:
     def _call(self, name: Token) -> Operand:
         opening = self._take()
         if name.text not in FUNCTIONS:
-            self._refuse_function(name)
+            raise complaints.unknown_function(name)
         arguments: list[Operand] = []
         if self._next.text != ")":
             arguments.append(self._nested(opening, 0))
@@ -199,7 +194,8 @@ class Parser:
                 self._take()
                 arguments.append(self._nested(opening, 0))
         closing = self._close(opening)
-        self._check_count(name, len(arguments))
+        if (wrong := complaints.wrong_count(name, len(arguments))) is not None:
+            raise wrong
         node = self._build_call(name.text, arguments, name.start, closing.end)
         return Operand(node, name.start, closing.end)
 
@@ -231,8 +227,8 @@ class Parser:
         numbers = [value for value in values if value is not None]
         if len(numbers) == len(values) and self.graph.value(node) is None:
             result = constant_result(self.graph[node], numbers)
-            shown, place = _shortened(self.text[start:end].strip()), start + 1
-            raise FormulaError(f"{shown} at {place} {_fault(operation, numbers, result)}", place)
+            shown = self.text[start:end]
+            raise complaints.impossible_constant(shown, start + 1, operation, numbers, result)
         return node
 
     def _count(self, token: Token) -> None:
@@ -248,71 +244,10 @@ class Parser:
         if self._next.text == ")":
             return self._take()
         if self._next.kind == "end":
-            raise FormulaError(
-                f"( at {opening.position} is never closed; add ) at {self._next.position}", opening.position
-            )
-        self._refuse_leftover()
-
-    def _refuse_leftover(self) -> NoReturn:
-        """Whatever cannot follow a complete expression."""
-        token = self._next
-        self._refuse_missing_operator()
-        if token.text == ")":
-            raise FormulaError(f") at {token.position} closes nothing; no ( is open there", token.position)
-        if token.text == ",":
-            raise FormulaError(
-                f"comma at {token.position} is outside a call; a decimal number has a point as in 0.5",
-                token.position,
-            )
-        raise FormulaError(f"{token} at {token.position} has no if; write a if condition else b", token.position)
-
-    def _refuse_missing_operator(self) -> None:
-        """Complain if an operand follows an operand, as in 2x."""
-        token, before = self._next, self.tokens[self._at - 1]
-        starts_operand = token.kind in ("number", "name") and token.text not in {"else", "if", "and", "or"}
-        if not starts_operand and token.text != "(":
-            return
-        place = token.position
-        if before.text == ")" or token.text == "not":
-            raise FormulaError(f"missing operator at {place} before {token}; to multiply write *", place)
-        right = f"{token}(...)" if token.text in FUNCTIONS else "(...)" if token.text == "(" else token.text
-        raise FormulaError(f"missing operator at {place}; did you mean {before}*{right}?", place)
-
-    def _refuse_function(self, name: Token) -> NoReturn:
-        place = name.position
-        if name.text in CONSTANTS:
-            raise FormulaError(f"{name} at {place} is a number, not a function; did you mean {name}*(...)?", place)
-        close = difflib.get_close_matches(name.text.lower(), FUNCTIONS, n=1)
-        hint = close[0] if close and len(name.text) > 1 else f"{name}*(...)"
-        raise FormulaError(f"unknown function {name} at {place}; did you mean {hint}?", place)
-
-    def _refuse_nesting(self, token: Token) -> NoReturn:
-        raise FormulaError(
-            f"nested more than {DEEPEST_NESTING} deep at {token.position}; use fewer parentheses",
-            token.position,
-        )
-
-    def _check_count(self, name: Token, count: int) -> None:
-        signature = FUNCTIONS[name.text]
-        if count >= signature.least and (signature.most is None or count <= signature.most):
-            return
-        relatives = [other for other in FUNCTIONS if other.rstrip("2") == name.text.rstrip("2")]
-        fits = [other for other in relatives if other != name.text and FUNCTIONS[other].least == count]
-        hint = f"; did you mean {fits[0]}?" if fits else ""
-        place = name.position
-        raise FormulaError(f"{name} takes {signature}, not {count} at {place}{hint}", place)
+            raise complaints.unclosed(opening, self._next)
+        raise complaints.leftover(self._next, self._before)
 
 
-def _fault(operation: str, values: list[float], result: float) -> str:
-    """Why a constant is refused."""
-    negative_power = operation == "power" and values[0] == 0.0
-    if negative_power or (operation in ("divide", "mod") and values[1] == 0.0):
-        return "divides by zero"
-    if result != result:
-        return "is not a real number"
-    return "is infinite" if operation in ("log", "log2") else "is too large for a number"
-
-
-def _shortened(text: str) -> str:
-    """``text``, or its two ends where it is long."""
-    return text if len(text) <= 40 else f"{text[:18]}...{text[-18:]}"
+def _too_nested(token: Token) -> FormulaError:
+    place = token.position
+    return FormulaError(f"nested more than {DEEPEST_NESTING} deep at {place}; use fewer parentheses", place)

@@ -19,6 +19,7 @@ class Written(NamedTuple):
 
     text: str
     binding: int
+    divides: bool = False  # a product with a quotient in it, which has to stay together
 
     def at_least(self, binding: int) -> str:
         """The text, in parentheses if it holds together less tightly than ``binding``."""
@@ -38,7 +39,7 @@ COMPARING = {
 def arithmetic(node: Node, operands: Sequence[Written], space: str) -> Written | None:
     """+ - * / and the sign, which both languages write alike; None for any other operation.
 
-    Products of products lose their parentheses, sums of sums keep them.
+    Products of products lose their parentheses; sums of sums keep them, since those round differently.
     """
     if node.operation == "negate":
         return Written("-" + operands[0].at_least(PRODUCT), SIGN)
@@ -47,8 +48,11 @@ def arithmetic(node: Node, operands: Sequence[Written], space: str) -> Written |
         return Written(operands[0].at_least(SUM) + sign + operands[1].at_least(PRODUCT), SUM)
     if node.operation in ("multiply", "divide"):
         sign = "*" if node.operation == "multiply" else "/"
-        right = operands[1].at_least(PRODUCT + 1)
-        return Written(operands[0].at_least(PRODUCT) + space + sign + space + right, PRODUCT)
+        product_of_products = node.operation == "multiply" and not operands[1].divides
+        right = operands[1].at_least(PRODUCT if product_of_products else POWER)
+        text = operands[0].at_least(SIGN) + space + sign + space + right
+        divides = node.operation == "divide" or operands[0].divides
+        return Written(text, SIGN if text.startswith("-") else PRODUCT, divides)
     return None
 
 
@@ -74,7 +78,7 @@ def _write(node: Node, operands: Sequence[Written]) -> Written:
     if node.operation == "variable":
         return Written(node.name, WHOLE)
     if node.operation == "mod":
-        return Written(f"{operands[0].at_least(PRODUCT)} % {operands[1].at_least(PRODUCT + 1)}", PRODUCT)
+        return Written(f"{operands[0].at_least(POWER)} % {operands[1].at_least(POWER)}", SUM)
     if node.operation == "power":
         return Written(f"{operands[0].at_least(WHOLE)}^{operands[1].at_least(POWER)}", POWER)
     if node.operation == "choose":
@@ -94,4 +98,5 @@ def _write_condition(node: Node, operands: Sequence[Written]) -> Written:
         sign, _ = COMPARING[node.operation]
         return Written(f"{operands[0].at_least(SUM)} {sign} {operands[1].at_least(SUM)}", RELATION)
     binding = AND if node.operation == "and" else OR
-    return Written(f"{operands[0].at_least(binding)} {node.operation} {operands[1].at_least(binding + 1)}", binding)
+    left, right = operands[0].at_least(binding), operands[1].at_least(binding + 1)
+    return Written(f"{left} {node.operation} {right}", binding)

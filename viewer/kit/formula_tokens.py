@@ -39,7 +39,7 @@ class Token(NamedTuple):
         return self.start + 1
 
     def __str__(self) -> str:
-        return "the end" if self.kind == "end" else self.text
+        return {"": "the end", ",": "a comma"}.get(self.text, self.text)
 
 
 OPERATOR_WORDS = frozenset({"and", "or", "not", "if", "else"})
@@ -58,6 +58,8 @@ WORD = re.compile(
     r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
     r"|(?P<operator>\*\*|<=|>=|==|!=|[-+*/%^<>(),])"
 )
+
+NUMBER_LIKE = re.compile(r"[0-9.]+")
 
 CHARACTER_HINTS = {
     **dict.fromkeys("\u2212\u2010\u2011\u2012\u2013\u2014\u00ad", "type the ASCII minus -"),
@@ -117,9 +119,10 @@ def tokenize(text: str) -> list[Token]:
 def _checked(token: Token, text: str) -> Token:
     """``token`` itself, if it is a word that may stand in a formula."""
     place = token.position
-    if token.kind == "number" and (malformed := re.match(r"[0-9.]*\.[0-9.]*", text[token.start :])):
-        if malformed.group().count(".") > 1:
-            raise FormulaError(f"{malformed.group()} at {place} is not a number; use one point as in 0.5", place)
+    digits = NUMBER_LIKE.match(text, token.start)
+    if token.kind == "number" and digits and digits.group().count(".") > 1:
+        shown = digits.group()
+        raise FormulaError(f"{shown} at {place} is not a number; use one point as in 0.5", place)
     if token.kind == "name" and len(token.text) > LONGEST_NAME:
         raise FormulaError(
             f"name {token.text[:12]}... at {place} has {len(token.text)} characters; "
@@ -138,7 +141,8 @@ def _unknown_character(text: str, offset: int) -> FormulaError:
     place = offset + 1
     if character == "=":
         return FormulaError(
-            f"= at {place} assigns, which a formula cannot; write == to compare, or only the right side", place
+            f"= at {place} assigns, which a formula cannot; write == to compare, or only the right side",
+            place,
         )
     shown = character if character.isprintable() else f"U+{ord(character):04X}"
     hint = CHARACTER_HINTS.get(character) or _plain_equivalent(character)
@@ -147,6 +151,8 @@ def _unknown_character(text: str, offset: int) -> FormulaError:
 
 def _plain_equivalent(character: str) -> str:
     """A hint that names the ASCII text which looks like ``character``, or nothing."""
+    if character.isascii() and character.isprintable():
+        return "operators are + - * / % ^"
     plain = unicodedata.normalize("NFKC", character)
     if unicodedata.category(character) == "No" and plain.isdigit() and plain.isascii():
         return f"type ^{plain} for a power"

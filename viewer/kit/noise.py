@@ -7,6 +7,7 @@ Perlin, "An Image Synthesizer", SIGGRAPH 1985. ``shaders/lib/noise.glsl`` gives 
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -73,23 +74,22 @@ def noise_derivative(x: ArrayLike, y: ArrayLike, z: ArrayLike, order: Order) -> 
     with np.errstate(all="ignore"):
         cells = [np.floor(coordinate) for coordinate in point]
         inside = [coordinate - cell for coordinate, cell in zip(point, cells, strict=True)]
-        corner = [cell.astype(np.int64) & 255 for cell in cells]
+        lattice = [cell.astype(np.int64) & 255 for cell in cells]
         weights = [_weights(t, n) for t, n in zip(inside, order, strict=True)]
         lowered = [_weights(t, n - 1) if n else None for t, n in zip(inside, order, strict=True)]
         gradients = _CORNER_GRADIENT.astype(dtype, copy=False)
         total: Any = np.zeros((), dtype)
-        for i, j, k in product((0, 1), repeat=3):
-            index = _HASH[_HASH[corner[0] + i] + corner[1] + j] + corner[2] + k
-            toward = [axis.take(index) for axis in gradients]
-            here = (i, j, k)
+        for here in product((0, 1), repeat=3):
+            i, j, k = here
+            index = _HASH[_HASH[lattice[0] + i] + lattice[1] + j] + lattice[2] + k
+            direction = [axis.take(index) for axis in gradients]
+            height = sum(direction[axis] * (inside[axis] - here[axis]) for axis in range(3))
             weight = [weights[axis][here[axis]] for axis in range(3)]
-            reach = sum(toward[axis] * (inside[axis] - here[axis]) for axis in range(3))
-            total = total + weight[0] * weight[1] * weight[2] * reach
+            total = total + weight[0] * weight[1] * weight[2] * height
             for axis, lower in enumerate(lowered):
                 if lower is not None:
-                    other, third = (axis + 1) % 3, (axis + 2) % 3
-                    scale = order[axis] * lower[here[axis]] * weight[other] * weight[third]
-                    total = total + scale * toward[axis]
+                    others = weight[axis - 1] * weight[axis - 2]
+                    total = total + order[axis] * lower[here[axis]] * others * direction[axis]
     return np.asarray(total, dtype)
 
 
@@ -117,18 +117,24 @@ def turbulence_derivative(x: ArrayLike, y: ArrayLike, z: ArrayLike, order: Order
     return np.asarray(total, point[0].dtype)
 
 
+@cache
+def _fade_coefficients(order: int) -> tuple[float, ...]:
+    """The coefficients, highest power first, of the fade polynomial differentiated ``order`` times."""
+    return tuple(float(coefficient) for coefficient in np.polyder(np.poly1d(FADE), order).coeffs)
+
+
 def _weights(t: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
     """The blend weights of the lower and the upper corner along one axis, differentiated ``order`` times."""
-    coefficients = np.polyder(np.poly1d(FADE), order).coeffs
     upper = np.zeros_like(t)
-    for coefficient in coefficients:
-        upper = upper * t + t.dtype.type(coefficient)
+    for coefficient in _fade_coefficients(order):
+        upper = upper * t + coefficient
     return (1 if order == 0 else 0) - upper, upper
 
 
 def _floating(*values: ArrayLike) -> list[FloatArray]:
     """The values as arrays of one floating type, float32 only if all of them are."""
     arrays = [np.asarray(value) for value in values]
-    kinds = {array.dtype for array, value in zip(arrays, values, strict=True) if not isinstance(value, int | float)}
+    pairs = zip(arrays, values, strict=True)
+    kinds = {array.dtype for array, value in pairs if not isinstance(value, int | float)}
     dtype = np.float32 if kinds == {np.dtype(np.float32)} else np.float64
     return [array.astype(dtype, copy=False) for array in arrays]

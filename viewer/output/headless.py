@@ -44,7 +44,7 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
     try:
         pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
         if pose:
-            stage.pose(pose)
+            stage.camera.pose(pose)
         yield stage
     finally:
         stage.release()

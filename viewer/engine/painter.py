@@ -1,0 +1,110 @@
+"""How a frame comes about: shadow map, scene, set, then the finished picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from viewer.engine.camera import OrbitCamera
+from viewer.engine.clock import FRAME_SECONDS
+from viewer.engine.frame import FrameBlock
+from viewer.engine.gpu import Gpu
+from viewer.engine.picture import Picture
+from viewer.engine.scene import Scene, Studio
+from viewer.engine.shaders import ShaderError, ShaderFolders
+from viewer.engine.studio import StudioSet
+
+
+class Painter:
+    """Owns what is drawn with and into, apart from the scene's own: frame block, set and picture."""
+
+    def __init__(self, context: moderngl.Context, shaders: ShaderFolders, plan: Studio, size: tuple[int, int],
+                 samples: int) -> None:
+        self.context = context
+        self._set_arena = Gpu(context, shaders)
+        self._picture_arena = Gpu(context, shaders)
+        self._block = FrameBlock(context)
+        self._shadow_shows: Hashable = None
+        try:
+            self.studio = StudioSet(self._set_arena, plan)
+            self.picture = Picture(self._picture_arena, size, samples)
+        except BaseException:
+            self.release()
+            raise
+
+    def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None]) -> None:
+        """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour."""
+        self._cast_shadow(scene, frame, draw)
+        self.set_moment(camera, frame)
+        self.picture.begin()
+        self._plain_state()
+        self.studio.shadow.bind()
+        draw()
+        self._plain_state()
+        self.studio.draw()
+        self.picture.finish()
+
+    def set_moment(self, camera: OrbitCamera, frame: int) -> None:
+        """Write the frame block for ``camera`` at ``frame``, so that shaders may run."""
+        view, projection = camera.view(), camera.projection(self.picture.size[0] / self.picture.size[1])
+        both = view @ projection
+        self._write(frame, {"u_view": view, "u_projection": projection, "u_view_projection": both,
+                            "u_clip_to_world": np.linalg.inv(both), "u_eye": camera.eye})
+
+    def resize(self, size: tuple[int, int], samples: int) -> None:
+        """Pictures of another size from now on; raises GpuError beyond the driver's limits, changing nothing."""
+        arena = Gpu(self.context, self._picture_arena.shaders)
+        try:
+            picture = Picture(arena, size, samples)
+        except BaseException:
+            arena.release()
+            raise
+        self._picture_arena.release()
+        self._picture_arena, self.picture = arena, picture
+
+    def furnish(self, plan: Studio) -> None:
+        """Put up another set."""
+        if plan != self.studio.plan:
+            self._set_arena.release()
+            self.studio = StudioSet(self._set_arena, plan)
+            self._shadow_shows = None
+
+    def refresh(self) -> ShaderError | None:
+        """Take over edited shader files of the set; returns the error that stands, if any."""
+        return self._set_arena.refresh() or self._picture_arena.refresh()
+
+    def release(self) -> None:
+        """Free everything on the GPU."""
+        self._set_arena.release()
+        self._picture_arena.release()
+        self._block.release()
+
+    def _cast_shadow(self, scene: Scene, frame: int, draw: Callable[[], None]) -> None:
+        moment = frame if scene.reads_time or scene.gpu.reads_time else None
+        shows = (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation, moment)
+        if shows == self._shadow_shows:
+            return
+        self._shadow_shows = None
+        self._write(frame, self.studio.light_values())
+        scene.gpu.casting_shadows = True
+        try:
+            self.studio.shadow.cast(draw)
+        finally:
+            scene.gpu.casting_shadows = False
+        self._shadow_shows = shows
+
+    def _write(self, frame: int, camera: Mapping[str, Any]) -> None:
+        self._block.write({**self.studio.frame_values(), **camera, "u_time": frame * FRAME_SECONDS,
+                           "u_frame": frame, "u_resolution": self.picture.size})
+        self._block.bind()
+
+    def _plain_state(self) -> None:
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        self.context.depth_func = "<"
+        self.context.blend_func = moderngl.DEFAULT_BLENDING
+        self.context.blend_equation = moderngl.FUNC_ADD
+        self.context.cull_face = "back"
+        self.context.front_face = "ccw"

@@ -1,0 +1,69 @@
+"""The keys and what the mouse does, over everything."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from viewer.ui import theme
+from viewer.ui.actions import ACTIONS, MOUSE
+from viewer.ui.typography import FLOATING, heading
+
+if TYPE_CHECKING:
+    from viewer.ui.workbench import Workbench
+
+KEY_EMS = 8.0
+TWO_COLUMNS_FROM = 46.0
+
+
+def draw(bench: Workbench) -> None:
+    """The overlay, where it is open; a click beside it closes it."""
+    if not bench.view.help:
+        return
+    view, em = imgui.get_main_viewport(), imgui.get_font_size()
+    columns = 2 if view.size.x > TWO_COLUMNS_FROM * em else 1
+    imgui.set_next_window_pos(view.get_center(), imgui.Cond_.always, imgui.ImVec2(0.5, 0.5))
+    width = min(21.0 * em * columns + 4.0 * em, view.size.x - em)
+    imgui.set_next_window_size_constraints(imgui.ImVec2(width, 0), imgui.ImVec2(width, max(1.0, view.size.y - em)))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, imgui.ImVec2(1.4 * em, 1.1 * em))
+    imgui.begin("Keys and mouse", None, (FLOATING & ~imgui.WindowFlags_.no_scrollbar)
+                | imgui.WindowFlags_.always_auto_resize)
+    imgui.set_window_focus()
+    _columns(bench, columns)
+    clicked_beside = imgui.is_mouse_clicked(0) and not imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
+    imgui.end()
+    imgui.pop_style_var()
+    if clicked_beside:
+        bench.view.help = False
+
+
+def _columns(bench: Workbench, columns: int) -> None:
+    groups: dict[str, list[tuple[str, str]]] = {"Mouse": list(MOUSE)}
+    for action in ACTIONS:
+        if action.keys:
+            groups.setdefault(action.menu, []).append((action.keys, action.title))
+    order = ["Play", "Edit", "Picture", "Help", "View", "Mouse"]
+    if imgui.begin_table("columns", columns):
+        imgui.table_next_column()
+        for name in order:
+            if columns == 2 and name == "View":
+                imgui.table_next_column()
+            heading(name, bench.session.fonts)
+            for keys, title in groups[name]:
+                _line(keys, title)
+            imgui.dummy(imgui.ImVec2(0, 0.3 * imgui.get_font_size()))
+        imgui.end_table()
+
+
+def _line(keys: str, title: str) -> None:
+    start, em = imgui.get_cursor_pos_x(), imgui.get_font_size()
+    imgui.push_text_wrap_pos(start + KEY_EMS * em - 0.5 * em)
+    imgui.push_style_color(imgui.Col_.text, theme.ACCENT)
+    imgui.text_unformatted(keys)
+    imgui.pop_style_color()
+    imgui.pop_text_wrap_pos()
+    imgui.same_line(start + KEY_EMS * em)
+    imgui.push_text_wrap_pos(0.0)
+    imgui.text_unformatted(title)
+    imgui.pop_text_wrap_pos()

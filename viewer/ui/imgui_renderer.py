@@ -1,0 +1,198 @@
+"""Draws what ImGui prepared, with moderngl and GLSL 3.30, by the texture protocol of Dear ImGui 1.92.
+
+ImGui asks for textures to be made, updated and destroyed as glyphs come and go; ``render`` obeys before
+it draws. Pictures of our own are shown by telling the renderer their texture with ``lend``.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING
+
+import moderngl
+import numpy as np
+from imgui_bundle import imgui
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from imgui_bundle.imgui import ImDrawCmd, ImDrawData, ImTextureData
+
+VERTEX_BYTES = 20   # position 2f, texture coordinate 2f, colour 4 bytes
+INDEX_BYTES = 4
+
+VERTEX_SHADER = """
+#version 330 core
+uniform vec2 u_scale;
+uniform vec2 u_offset;
+in vec2 in_position;
+in vec2 in_texcoord;
+in vec4 in_color;
+out vec2 v_texcoord;
+out vec4 v_color;
+void main() {
+    v_texcoord = in_texcoord;
+    v_color = in_color;
+    gl_Position = vec4(in_position * u_scale + u_offset, 0.0, 1.0);
+}
+"""
+
+FRAGMENT_SHADER = """
+#version 330 core
+uniform sampler2D u_texture;
+in vec2 v_texcoord;
+in vec4 v_color;
+out vec4 out_color;
+void main() {
+    out_color = v_color * texture(u_texture, v_texcoord);
+}
+"""
+
+
+class ImguiRenderer:
+    """Belongs to the ImGui context that is current when it is made; ``release`` while that still lives."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.context = context
+        imgui.get_io().backend_flags |= imgui.BackendFlags_.renderer_has_textures
+        platform = imgui.get_platform_io()
+        platform.renderer_texture_max_width = context.info["GL_MAX_TEXTURE_SIZE"]
+        platform.renderer_texture_max_height = context.info["GL_MAX_TEXTURE_SIZE"]
+        self._program = context.program(vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER)
+        self._program["u_texture"] = 0
+        self._textures: dict[int, moderngl.Texture] = {}
+        self._lent: dict[int, moderngl.Texture] = {}
+        self._make_room(1 << 18, 1 << 16)
+
+    def lend(self, texture: moderngl.Texture) -> imgui.ImTextureRef:
+        """What to hand to ``imgui.image`` to show ``texture``; good until the end of the next ``render``."""
+        self._lent[texture.glo] = texture
+        return imgui.ImTextureRef(texture.glo)
+
+    def render(self, data: ImDrawData, target: moderngl.Framebuffer) -> None:
+        """Draw ``data`` over ``target``, which covers the whole of ImGui's display."""
+        for texture in data.textures:
+            if texture.status != imgui.ImTextureStatus.ok:
+                self._update(texture)
+        width = round(data.display_size.x * data.framebuffer_scale.x)
+        height = round(data.display_size.y * data.framebuffer_scale.y)
+        if width > 0 and height > 0 and data.total_idx_count:
+            self._upload(data)
+            self._begin(data, target, (width, height))
+            try:
+                self._draw_lists(data, target, height)
+            finally:
+                target.scissor = None
+                self.context.disable(moderngl.BLEND)
+        self._lent.clear()
+
+    def release(self) -> None:
+        """Free everything on the GPU and tell ImGui that its textures are gone."""
+        for texture in imgui.get_platform_io().textures:
+            if texture.get_tex_id() in self._textures:
+                self._destroy(texture)
+        imgui.get_io().backend_flags &= ~imgui.BackendFlags_.renderer_has_textures
+        for left in self._textures.values():
+            left.release()
+        self._textures.clear()
+        self._free_room()
+        self._program.release()
+
+    def _begin(self, data: ImDrawData, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+        target.use()
+        target.viewport = (0, 0, *size)
+        context = self.context
+        context.enable_only(moderngl.BLEND)
+        context.blend_equation = moderngl.FUNC_ADD
+        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        scale = 2.0 / data.display_size.x, -2.0 / data.display_size.y
+        self._program["u_scale"] = scale
+        self._program["u_offset"] = -1.0 - data.display_pos.x * scale[0], 1.0 - data.display_pos.y * scale[1]
+
+    def _draw_lists(self, data: ImDrawData, target: moderngl.Framebuffer, height: int) -> None:
+        bound, first_index = -1, 0
+        for commands in data.cmd_lists:
+            for command in commands.cmd_buffer:
+                box = _clip(command, data, height)
+                if not box or not command.elem_count:
+                    continue
+                name = command.get_tex_id()
+                if name != bound:
+                    self._bind(name)
+                    bound = name
+                target.scissor = box
+                self._array.render(moderngl.TRIANGLES, vertices=command.elem_count,
+                                   first=first_index + command.idx_offset)
+            first_index += commands.idx_buffer.size()
+
+    def _bind(self, name: int) -> None:
+        texture = self._textures.get(name) or self._lent.get(name)
+        if texture is None:
+            raise KeyError(f"ImGui draws with texture {name}, which nobody lent to its renderer")
+        texture.use(0)
+
+    def _upload(self, data: ImDrawData) -> None:
+        """Send all lists at once; indices count from the start of the whole, as GL 3.3 wants them here."""
+        vertices, indices, base = [], [], 0
+        for commands in data.cmd_lists:
+            vertex_count, index_count = commands.vtx_buffer.size(), commands.idx_buffer.size()
+            vertices.append(ctypes.string_at(commands.vtx_buffer.data_address(), vertex_count * VERTEX_BYTES))
+            raw = ctypes.string_at(commands.idx_buffer.data_address(), index_count * INDEX_BYTES)
+            indices.append(np.frombuffer(raw, np.uint32) + np.uint32(base))
+            base += vertex_count
+        vertex_bytes, index_array = b"".join(vertices), np.concatenate(indices)
+        if len(vertex_bytes) > self._vertices.size or index_array.nbytes > self._indices.size:
+            self._free_room()
+            self._make_room(2 * len(vertex_bytes), 2 * index_array.nbytes)
+        self._vertices.orphan()
+        self._vertices.write(vertex_bytes)
+        self._indices.orphan()
+        self._indices.write(index_array)
+
+    def _make_room(self, vertex_bytes: int, index_bytes: int) -> None:
+        self._vertices = self.context.buffer(reserve=vertex_bytes, dynamic=True)
+        self._indices = self.context.buffer(reserve=index_bytes, dynamic=True)
+        content = [(self._vertices, "2f 2f 4f1", "in_position", "in_texcoord", "in_color")]
+        self._array = self.context.vertex_array(self._program, content, self._indices, index_element_size=INDEX_BYTES)
+
+    def _free_room(self) -> None:
+        for thing in (self._array, self._vertices, self._indices):
+            thing.release()
+
+    def _update(self, texture: ImTextureData) -> None:
+        if texture.status == imgui.ImTextureStatus.want_create:
+            made = self.context.texture((texture.width, texture.height), 4, _pixels(texture).tobytes())
+            made.label = "imgui glyphs"
+            self._textures[made.glo] = made
+            texture.set_tex_id(made.glo)
+            texture.set_status(imgui.ImTextureStatus.ok)
+        elif texture.status == imgui.ImTextureStatus.want_updates:
+            pixels, made = _pixels(texture), self._textures[texture.get_tex_id()]
+            for box in texture.updates:
+                part = pixels[box.y:box.y + box.h, box.x:box.x + box.w]
+                made.write(np.ascontiguousarray(part), viewport=(box.x, box.y, box.w, box.h))
+            texture.set_status(imgui.ImTextureStatus.ok)
+        elif texture.status == imgui.ImTextureStatus.want_destroy and texture.unused_frames > 0:
+            self._destroy(texture)
+
+    def _destroy(self, texture: ImTextureData) -> None:
+        made = self._textures.pop(texture.get_tex_id(), None)
+        if made:
+            made.release()
+        texture.set_tex_id(0)
+        texture.set_status(imgui.ImTextureStatus.destroyed)
+
+
+def _pixels(texture: ImTextureData) -> NDArray[np.uint8]:
+    """A texture's pixels in ImGui's memory, (height, width, 4)."""
+    flat = np.asarray(texture.get_pixels_array(), np.uint8)
+    return flat.reshape(texture.height, texture.width, 4)
+
+
+def _clip(command: ImDrawCmd, data: ImDrawData, height: int) -> tuple[int, int, int, int] | None:
+    """A command's clip rectangle as GL's scissor box in pixels, or None where nothing shows."""
+    clip, origin, scale = command.clip_rect, data.display_pos, data.framebuffer_scale
+    left, top = max(0, int((clip.x - origin.x) * scale.x)), max(0, int((clip.y - origin.y) * scale.y))
+    right, bottom = int((clip.z - origin.x) * scale.x), min(height, int((clip.w - origin.y) * scale.y))
+    if right <= left or bottom <= top:
+        return None
+    return left, height - bottom, right - left, bottom - top

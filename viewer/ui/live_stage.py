@@ -1,0 +1,161 @@
+"""A stage that goes on whatever happens: errors stop playback and are kept for the banner."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from viewer.engine.catalog import SceneEntry
+from viewer.engine.shaders import ShaderError
+from viewer.engine.stage import Stage
+from viewer.ui.guard import one_line
+
+WATCH_SECONDS = 0.2
+PLACE_IN_SCENE = re.compile(r"(?P<file>[\w.-]+\.py):(?P<line>\d+)")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something to tell the audience: what is wrong, and the line of the file where it is."""
+
+    text: str
+    place: str = ""
+    line: int = 0
+    source: str = ""
+
+
+def problem_of(error: Exception, entry: SceneEntry) -> Problem:
+    """``error`` with the source line it speaks of, where it speaks of one."""
+    if isinstance(error, ShaderError):
+        path = entry.shaders.find(error.place)
+        return Problem(error.text, error.place, error.line, _line_of(path, error.line) if path else "")
+    text = one_line(error)
+    place = PLACE_IN_SCENE.search(text)
+    if place and place["file"] == entry.file.name:
+        line = int(place["line"])
+        return Problem(text, place["file"], line, _line_of(entry.file, line))
+    return Problem(text)
+
+
+class LiveStage:
+    """Plays, draws, times and hot-reloads a stage, and remembers what went wrong last.
+
+    ``standing`` is an error of a file, there until the file is mended; ``problem`` is whatever the
+    banner has to say.
+    """
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.cpu_milliseconds = 0.0
+        self._failure: Problem | None = None
+        self._shader_problem: Problem | None = None
+        self._scene_problem: Problem | None = None
+        self._scene_stamp = _stamp(stage.entry.file)
+        self._shader_error: ShaderError | None = None
+        self._since_watch = 0.0
+        self._drawn: object = None
+        self._query = stage.context.query(time=True)
+        self._query_pending = False
+
+    @property
+    def problem(self) -> Problem | None:
+        """What the banner says, the root cause first."""
+        return self._scene_problem or self._shader_problem or self._failure
+
+    @property
+    def shader_error(self) -> ShaderError | None:
+        """The error that stands in a shader file."""
+        return self._shader_error
+
+    def advance(self, seconds: float) -> None:
+        """Play on, and look after edited files now and then."""
+        started = time.perf_counter()
+        self.attempt(lambda: self.stage.advance(seconds))
+        self.cpu_milliseconds = 1e3 * (time.perf_counter() - started)
+        self._since_watch += seconds
+        if self._since_watch >= WATCH_SECONDS:
+            self._since_watch = 0.0
+            self.watch()
+
+    def attempt(self, work: Callable[[], object]) -> bool:
+        """Do ``work`` on the stage; if it raises, pause, remember why and return False."""
+        try:
+            work()
+            return True
+        except Exception as error:
+            self._failure = problem_of(error, self.stage.entry)
+            self.stage.clock.playing = False
+            return False
+
+    def watch(self) -> None:
+        """Take over edited shader and scene files."""
+        self._shader_error = self.stage.refresh_shaders()
+        self._shader_problem = problem_of(self._shader_error, self.stage.entry) if self._shader_error else None
+        stamp = _stamp(self.stage.entry.file)
+        if stamp != self._scene_stamp:
+            self._scene_stamp = stamp
+            self.reload()
+        self._drawn = None
+
+    def reload(self) -> None:
+        """Build the scene from its file anew."""
+        try:
+            self.stage.reload_scene()
+            self._scene_problem = self._failure = None
+        except Exception as error:
+            self._scene_problem = problem_of(error, self.stage.entry)
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Draw pictures of ``size`` from now on."""
+        self.attempt(lambda: self.stage.resize(size))
+
+    def render(self) -> None:
+        """Draw the picture if anything that it shows has changed; the last good one stays otherwise."""
+        state = self._state()
+        if state == self._drawn:
+            return
+        started = time.perf_counter()
+        self._read_query()
+        if self.attempt(self._timed_render):
+            self._failure = None
+        self._drawn = state
+        self.cpu_milliseconds += 1e3 * (time.perf_counter() - started)
+
+    def release(self) -> None:
+        """Free the stage."""
+        self.stage.release()
+
+    def _timed_render(self) -> None:
+        with self._query:
+            self.stage.render()
+        self._query_pending = True
+
+    def _read_query(self) -> None:
+        """Last frame's time on the GPU: read now, it is long finished and nothing waits."""
+        if self._query_pending:
+            self.stage.gpu_milliseconds = self._query.elapsed * 1e-6
+            self._query_pending = False
+
+    def _state(self) -> tuple[object, ...]:
+        stage, camera = self.stage, self.stage.camera
+        return (id(stage.scene), stage.frame, stage.params.revision, stage.size, camera.yaw, camera.pitch,
+                camera.distance, camera.field_of_view, *camera.target)
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    try:
+        status = path.stat()
+        return status.st_mtime_ns, status.st_size
+    except OSError:
+        return 0, -1
+
+
+def _line_of(path: Path, line: int) -> str:
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    return lines[line - 1].strip() if 1 <= line <= len(lines) else ""

@@ -1,0 +1,245 @@
+"""What a window shows: the catalogue, the stage that is on, its panels, and what the user did to them.
+
+Knows nothing of the window system: input comes in through ImGui's events, the picture goes out to a
+``Surface``. The window, the headless capture with panels and the tests all drive this one class.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import moderngl
+
+from viewer.engine.catalog import Catalog, SceneEntry
+from viewer.engine.stage import Stage
+from viewer.errors import DemoscopeError
+from viewer.ui import actions, screenshot
+from viewer.ui.guard import one_line
+from viewer.ui.history import History
+from viewer.ui.imgui_session import ImguiSession, Surface
+from viewer.ui.layout import Box, Layout, View, arrange
+from viewer.ui.live_stage import LiveStage, Problem
+from viewer.ui.measurer import Measurer
+from viewer.ui.panels import Panels
+from viewer.ui.picture_view import PictureView
+
+if TYPE_CHECKING:
+    from viewer.engine.presets import Preset
+
+TOAST_SECONDS = 5.0
+LONGEST_WALL_STEP = 0.25
+
+
+class Workbench:
+    """Shows one stage at a time. With ``steady`` everything that a wall clock would change stands still."""
+
+    def __init__(self, context: moderngl.Context, catalog: Catalog, *, samples: int = 4, seed: int = 0,
+                 steady: bool = False) -> None:
+        self.context = context
+        self.catalog = catalog
+        self.samples, self.seed, self.steady = samples, seed, steady
+        self.view = View()
+        self.entries: list[SceneEntry] = catalog.entries()
+        self.live: LiveStage | None = None
+        self.measurer: Measurer | None = None
+        self.history = History()
+        self.notice: Problem | None = None
+        self.toast = ""
+        self.panel_milliseconds = 0.0
+        self.on_fullscreen: Callable[[], None] = lambda: None
+        self.session = ImguiSession(context)
+        self.layout = Layout(Box())
+        self.surface: Surface | None = None
+        self.picture_view = PictureView(self)
+        self.panels = Panels(self)
+        self._toast_left = 0.0
+        self._screenshot_due = False
+        self._borrowed = False
+
+    # Scenes
+
+    @property
+    def stage(self) -> Stage | None:
+        """The stage that is on, if any."""
+        return self.live.stage if self.live else None
+
+    def open(self, name: str, params: Mapping[str, object] | None = None) -> bool:
+        """Put another scene on; the present one stays, with a message, if that one cannot be built."""
+        try:
+            size = self.stage.size if self.stage else self._picture_pixels()
+            stage = Stage(self.context, self.catalog.find(name), size=size, samples=self.samples, params=params,
+                          seed=self.seed)
+        except Exception as error:
+            self.tell(error)
+            return False
+        self.show(stage)
+        return True
+
+    def show(self, stage: Stage, *, borrowed: bool = False) -> None:
+        """Put ``stage`` on and release the one before; a ``borrowed`` stage is released by its owner."""
+        former, former_borrowed = self.live, self._borrowed
+        self.live, self._borrowed = LiveStage(stage), borrowed
+        self.measurer = Measurer(stage, patient=not self.steady)
+        self.history = History()
+        self.notice = None
+        self.panels.stage_changed()
+        if former and not former_borrowed:
+            former.release()
+
+    # Changes
+
+    def change(self, subject: str, values: Mapping[str, object]) -> DemoscopeError | None:
+        """Set parameters as one step of the history; returns the error instead of raising it."""
+        assert self.stage
+        stage = self.stage
+        return self._remembered(subject, lambda: stage.update_params(values))
+
+    def reset(self, name: str | None = None) -> DemoscopeError | None:
+        """Set one parameter, or all, to the default."""
+        if not self.stage:
+            return None
+        stage = self.stage
+        if name is None:
+            self.panels.stage_changed()
+        return self._remembered(f"reset {name}", lambda: stage.reset_params(name))
+
+    def apply_preset(self, preset: Preset) -> None:
+        """Take over a preset's values and camera."""
+        if not self.stage:
+            return
+        error = self.change(f"preset {preset.name}", preset.values)
+        pose = preset.pose(self.stage.camera.start)
+        if pose and not error:
+            self.stage.pose(pose)
+        if error:
+            self.tell(error)
+
+    def undo(self) -> None:
+        """Take the last change back."""
+        self._restore(self.history.undo())
+
+    def redo(self) -> None:
+        """Make the change that was taken back again."""
+        self._restore(self.history.redo())
+
+    # Time and camera
+
+    def toggle_playing(self) -> None:
+        """Play if paused, pause if playing."""
+        if self.stage:
+            self.stage.clock.toggle()
+
+    def step(self, frames: int) -> None:
+        """Pause and go some frames on or back."""
+        if self.live:
+            stage = self.live.stage
+            stage.clock.playing = False
+            self.live.attempt(lambda: stage.step(frames))
+
+    def seek(self, frame: int) -> None:
+        """Go to a frame."""
+        if self.live:
+            stage = self.live.stage
+            self.live.attempt(lambda: stage.seek(frame))
+
+    def reset_camera(self) -> None:
+        """Back to where the scene starts the camera."""
+        if self.stage:
+            self.stage.camera.reset()
+
+    # The view
+
+    def toggle(self, part: str) -> None:
+        """Show or hide a part of the view, by its name in ``View``."""
+        setattr(self.view, part, not getattr(self.view, part))
+
+    def close_overlays(self) -> None:
+        """What Esc does; the window stays."""
+        self.view.help = False
+        self.notice = None
+
+    def tell(self, error: Exception) -> None:
+        """Show an error in the banner until it is dismissed."""
+        self.notice = Problem(one_line(error))
+
+    def say(self, text: str) -> None:
+        """Show a short text for a few seconds."""
+        self.toast, self._toast_left = text, TOAST_SECONDS
+
+    def screenshot(self, *, panels: bool) -> None:
+        """Save the picture, or the whole window once it is drawn."""
+        if panels:
+            self._screenshot_due = True
+        elif self.stage:
+            screenshot.save(self, screenshot.picture_pixels(self.stage))
+
+    # A frame
+
+    def draw(self, seconds: float, surface: Surface) -> None:
+        """Play on by ``seconds`` of wall time and draw everything."""
+        if self.live and not self.steady:
+            self.live.advance(min(seconds, LONGEST_WALL_STEP))
+        self.surface = surface
+        started = time.perf_counter()
+        self.session.frame(surface, seconds, self.view.scale, self._draw_panels)
+        panels = time.perf_counter() - started
+        if self.live and self.measurer and self.panels.measurements_visible:
+            self.measurer.run(dragging=self.panels.hand_on_widget)
+        if self.live and self.layout.picture.shown:
+            self.live.render()
+        surface.target.use()
+        surface.target.clear(0.0, 0.0, 0.0, 1.0)
+        started = time.perf_counter()
+        self.session.paint(surface.target)
+        self.panel_milliseconds = 1e3 * (panels + time.perf_counter() - started)
+        if self._screenshot_due:
+            self._screenshot_due = False
+            screenshot.save(self, screenshot.surface_pixels(surface))
+        self._toast_left -= seconds
+        if self._toast_left <= 0.0:
+            self.toast = ""
+
+    def release(self) -> None:
+        """Free everything on the GPU, but not a borrowed stage."""
+        if self.live and not self._borrowed:
+            self.live.release()
+        self.live = None
+        self.session.release()
+
+    # Inside
+
+    def _draw_panels(self) -> None:
+        assert self.surface
+        actions.run_pressed(self)
+        em, menu_height = self.panels.text_metrics()
+        self.layout = arrange(self.surface.size, em, menu_height, self.view)
+        if self.live and self.layout.picture.shown:
+            self.live.resize(self._picture_pixels())
+        self.picture_view.draw()
+        self.panels.draw()
+
+    def _picture_pixels(self) -> tuple[int, int]:
+        box, surface = self.layout.picture, self.surface
+        ratio = surface.pixel_ratio if surface else (1.0, 1.0)
+        return max(1, round(box.width * ratio[0])), max(1, round(box.height * ratio[1]))
+
+    def _remembered(self, subject: str, work: Callable[[], set[str]]) -> DemoscopeError | None:
+        assert self.stage
+        before = self.stage.params.stored()
+        try:
+            changed = work()
+        except DemoscopeError as error:
+            return error
+        if changed:
+            self.history.record(subject, before, self.stage.params.stored())
+        return None
+
+    def _restore(self, values: Mapping[str, object] | None) -> None:
+        if values is None or not self.stage:
+            return
+        try:
+            self.stage.update_params(values)
+        except DemoscopeError as error:
+            self.tell(error)
