@@ -32,7 +32,14 @@ TESSELLATIONS = {
 }
 EPSILONS = np.logspace(-7, 0, 29)
 PROBES = 4096
-EXACT = 3
+WAYS = {
+    "none": "The sphere's own normal, as if nothing had moved",
+    "notes": "As the lecture wrote it: add the derivative to the normal",
+    "gradient": "Subtract the derivative from the normal",
+    "exact": "The formula's own derivatives, through the cofactors of the Jacobian",
+    "forward": "Differences to neighbours at distance epsilon",
+    "central": "Differences between neighbours on either side, at distance epsilon",
+}
 
 
 class RipplingSphere(Scene):
@@ -45,14 +52,7 @@ class RipplingSphere(Scene):
         direction: str = choice("normal", {
             "x": "Every point moves along x", "normal": "Every point moves along the sphere's normal"},
             "Which way the points move")
-        normals: str = choice("exact", {
-            "none": "The sphere's own normal, as if nothing had moved",
-            "notes": "As the lecture wrote it: add the derivative to the normal",
-            "gradient": "Subtract the derivative from the normal",
-            "exact": "The formula's own derivatives, through the cofactors of the Jacobian",
-            "forward": "Differences to neighbours at distance epsilon",
-            "central": "Differences between neighbours on either side, at distance epsilon"},
-            "How the shader finds the normal")
+        normals: str = choice("exact", WAYS, "How the shader finds the normal")
         epsilon: float = slider(1e-3, 1e-7, 1.0, "Distance to the neighbours of finite differences", unit="radii",
                                 logarithmic=True)
         colouring: str = choice("surface", {
@@ -69,7 +69,7 @@ class RipplingSphere(Scene):
             "uv": "Latitude and longitude, crowded at the poles", "cube": "A cube blown up to equal angles",
             "ico": "An icosahedron, each triangle cut into four again and again"},
             "How the sphere is cut into triangles", rebuild=True)
-        subdivision: int = integer(6, 0, 9, "How finely: each step makes four triangles of one", rebuild=True)
+        subdivision: int = integer(5, 0, 9, "How finely: each step makes four triangles of one", rebuild=True)
 
     camera = Orbit(yaw=28, pitch=16, distance=4.6)
     studio = Studio(radius=1.6, ground=-1.12)
@@ -96,14 +96,9 @@ class RipplingSphere(Scene):
     def draw(self) -> None:
         self.surface.render()
         if self.params.show_normals:
-            for way in sorted({EXACT, self.way}):
-                self.needle["u_way"] = way
+            for way in dict.fromkeys(["exact", self.params.normals]):
+                self.needle["u_way"] = list(WAYS).index(way)
                 self.needles.render(instances=self.params.needles)
-
-    @property
-    def way(self) -> int:
-        """The chosen way to a normal, as the shaders number it."""
-        return self.Params.normals.options.index(self.params.normals)
 
     def geometry(self) -> Geometry:
         captured = self.surface.capture({"v_position": 3, "v_normal": 3}, len(self.vertices))
@@ -145,7 +140,8 @@ class RipplingSphere(Scene):
         height = np.asarray(function.evaluate(x=x, y=y, z=z, t=self.time, **self.params.numbers(function)))
         height = np.where(np.abs(height) <= 100.0, height, 0.0)
         way = np.array([1.0, 0.0, 0.0]) if self.params.direction == "x" else points
-        return points + height[:, None] * way
+        rippled: NDArray[np.float64] = points + height[:, None] * way
+        return rippled
 
 
 def needle_corners() -> NDArray[np.float32]:

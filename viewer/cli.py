@@ -20,7 +20,7 @@ from viewer.errors import DemoscopeError
 
 MISTAKE = 2
 PICTURE_FOLDER = Path("captures")
-PICTURE_SIZE = (1280, 720)
+WINDOW_SIZE = (1280, 800)
 
 
 class Parser(argparse.ArgumentParser):
@@ -166,7 +166,7 @@ def _parser() -> Parser:
     window = _command(commands, "run", run_window, "open the window (what demoscope does by itself)")
     window.add_argument("scene", nargs="?", help="the scene to start with")
     _scene_options(window)
-    _picture_options(window, PICTURE_SIZE)
+    _picture_options(window, WINDOW_SIZE)
 
     listing = _command(commands, "list", run_list, "the scenes")
     listing.add_argument("--json", action="store_true", help="with every parameter and its limits")
@@ -206,7 +206,7 @@ def _scene_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _picture_options(parser: argparse.ArgumentParser, size: tuple[int, int]) -> None:
-    parser.add_argument("--size", type=_size, default=size, metavar="WxH", help="pixels (default %dx%d)" % size)
+    parser.add_argument("--size", type=_size, default=size, metavar="WxH", help=f"pixels (default {size[0]}x{size[1]})")
     parser.add_argument("--samples", type=_whole_number, default=4, help="samples for each pixel (default 4)")
     parser.add_argument("--camera", type=_pose, metavar="YAW,PITCH,DISTANCE", help="where to stand")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from viewer.errors import DemoscopeError
@@ -31,10 +31,9 @@ def whole_file(path: Path) -> Iterator[Path]:
         try:
             yield Path(name)
             _give_usual_permissions(name)
-            os.replace(name, path)
+            Path(name).replace(path)
         finally:
-            with suppress(FileNotFoundError):
-                os.unlink(name)
+            Path(name).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
 
@@ -43,4 +42,4 @@ def _give_usual_permissions(name: str) -> None:
     """Undo mkstemp's private mode, so that the file is as readable as any other the user makes."""
     mask = os.umask(0)
     os.umask(mask)
-    os.chmod(name, 0o666 & ~mask)
+    Path(name).chmod(0o666 & ~mask)

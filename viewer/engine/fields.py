@@ -113,7 +113,7 @@ class Number(Field[T]):
     def number(self, value: object, whole: object) -> float:
         """``value`` as a finite float inside the range; ``whole`` is what the message quotes."""
         try:
-            if isinstance(value, bool) or not isinstance(value, (str, int, float)) and not hasattr(value, "__float__"):
+            if isinstance(value, bool):
                 raise TypeError
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):

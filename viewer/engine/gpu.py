@@ -81,11 +81,11 @@ class Gpu:
         return made
 
     def texture(self, size: tuple[int, int], components: int, data: ArrayLike | None = None, *,
-                dtype: str = "f1", label: str = "") -> moderngl.Texture:
-        """A 2D texture; raises GpuError where ``size`` is beyond the driver's limit."""
+                samples: int = 0, dtype: str = "f1", label: str = "") -> moderngl.Texture:
+        """A 2D texture, or a multisampled one to draw into; raises GpuError where ``size`` is beyond the driver's limit."""
         self.check_size(size, "a texture")
         pixels = None if data is None else np.ascontiguousarray(data)
-        made = self.context.texture(size, components, pixels, dtype=dtype)
+        made = self.context.texture(size, components, pixels, samples=samples, dtype=dtype)
         self.own(made, label)
         return made
 

@@ -22,37 +22,37 @@ class Picture:
         self.size = size
         self.gpu = gpu
         self.samples = min(samples, gpu.context.max_samples) if samples > 1 else 0
-        self._linear = gpu.texture(size, 4, dtype="f2", label="linear picture")
-        self._resolved = gpu.framebuffer([self._linear], gpu.depth_renderbuffer(size, label="depth"), "resolved")
-        self._sampled = self._multisampled() if self.samples else self._resolved
+        self._linear = self._target()
         self.texture = gpu.texture(size, 4, label="finished picture")
         self._finished = gpu.framebuffer([self.texture], label="finished")
-        program = gpu.program("studio/screen.vert", "studio/finish.frag")
+        program = gpu.program("studio/screen.vert", "studio/finish_samples.frag" if self.samples else "studio/finish.frag")
         program["u_linear"] = 0
+        if self.samples:
+            program["u_samples"] = self.samples
         self._finish: VertexArray = gpu.vertex_array(program)
 
-    def _multisampled(self) -> moderngl.Framebuffer:
-        """The multisampled target, or the plain one where the driver refuses, as some virtual machines do."""
+    def _target(self) -> moderngl.Texture:
+        """The linear target, without samples where the driver refuses them, as some virtual machines do."""
         try:
-            color = self.gpu.renderbuffer(self.size, 4, samples=self.samples, dtype="f2", label="samples")
-            depth = self.gpu.depth_renderbuffer(self.size, samples=self.samples, label="depth samples")
-            return self.gpu.framebuffer([color], depth, "multisampled")
+            linear = self.gpu.texture(self.size, 4, samples=self.samples, dtype="f2", label="linear picture")
+            depth = self.gpu.depth_renderbuffer(self.size, samples=self.samples, label="depth")
+            self._drawn = self.gpu.framebuffer([linear], depth, "linear picture")
+            return linear
         except moderngl.Error:
+            if not self.samples:
+                raise
             self.samples = 0
-            return self._resolved
+            return self._target()
 
     def begin(self) -> None:
         """Make the linear target the one that is drawn into, and clear it."""
-        self._sampled.use()
-        self._sampled.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
+        self._drawn.use()
+        self._drawn.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
 
     def finish(self) -> None:
-        """Resolve the samples, map the tones and encode to sRGB, once."""
-        context = self.gpu.context
-        if self._sampled is not self._resolved:
-            context.copy_framebuffer(self._resolved, self._sampled)
+        """Map the tones of each sample, average the samples and encode to sRGB, once."""
         self._finished.use()
-        context.disable(moderngl.DEPTH_TEST | moderngl.BLEND | moderngl.CULL_FACE)
+        self.gpu.context.enable_only(moderngl.NOTHING)
         self._linear.use(0)
         self._finish.render(vertices=3)
 

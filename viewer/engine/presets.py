@@ -45,7 +45,8 @@ class Preset:
 
     def pose(self, start: Orbit) -> Orbit | None:
         """The camera of this preset, as far as it says one, the rest from ``start``."""
-        return replace(start, **self.camera) if self.camera else None
+        angles: dict[str, Any] = dict(self.camera)
+        return replace(start, **angles) if angles else None
 
 
 def user_folder(scene: str) -> Path:
@@ -70,13 +71,14 @@ def presets_for(entry: SceneEntry) -> list[Preset]:
 def load_preset(entry: SceneEntry, name: str | Path) -> Preset:
     """The preset called ``name``, or in the file ``name``; raises PresetError with the nearest name."""
     path = Path(name)
-    if path.suffix == ".toml" or path.parent != Path("."):
+    if path.suffix == ".toml" or len(path.parts) > 1:
         return read_preset(path)
     for folder in reversed(_folders(entry)):
         if (folder / f"{name}.toml").is_file():
             return read_preset(folder / f"{name}.toml")
     names = tuple(preset.name for preset in presets_for(entry))
-    raise PresetError(f"{entry.name} has no preset {name}{nearest(str(name), names)}; known: {', '.join(names) or 'none'}")
+    known = ", ".join(names) or "none"
+    raise PresetError(f"{entry.name} has no preset {name}{nearest(str(name), names)}; known: {known}")
 
 
 def read_preset(path: Path) -> Preset:

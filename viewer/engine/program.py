@@ -190,9 +190,9 @@ class VertexArray:
             rows = np.frombuffer(target.read(), np.float32).reshape(count, width)
         finally:
             target.release()
-        starts = np.cumsum([0, *varyings.values()])
-        columns = {name: rows[:, start:start + size] for (name, size), start in zip(varyings.items(), starts[:-1], strict=True)}
-        return {name: np.ascontiguousarray(column if varyings[name] > 1 else column[:, 0]) for name, column in columns.items()}
+        columns = np.split(rows, np.cumsum(list(varyings.values()))[:-1], axis=1)
+        return {name: np.ascontiguousarray(column if size > 1 else column[:, 0])
+                for (name, size), column in zip(varyings.items(), columns, strict=True)}
 
     def release(self) -> None:
         """Free the GL vertex arrays; the buffers belong to the arena."""

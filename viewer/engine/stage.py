@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.engine.camera import Orbit, OrbitCamera
+from viewer.engine.camera import OrbitCamera
 from viewer.engine.catalog import SceneEntry, scene_error
 from viewer.engine.clock import FRAME_SECONDS, Clock
 from viewer.engine.fields import ParameterError
@@ -23,7 +23,7 @@ from viewer.engine.shaders import ShaderError
 from viewer.errors import DemoscopeError
 
 Result = TypeVar("Result")
-DEFAULT_SIZE = (1280, 720)
+DEFAULT_SIZE = (640, 360)
 
 
 class Stage:

@@ -2,6 +2,8 @@
 
 An operation takes floating arrays (or 0-d values) of one type and gives the same type. Where GLSL and NumPy
 define a function differently, the definition here follows GLSL, so that both give the same values.
+Only what min, max and clamp make of an argument that is not a number is left open, as in GLSL: here it stays
+not a number.
 """
 
 from __future__ import annotations
@@ -124,7 +126,7 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
     "round": np.rint,
     "min": np.minimum,
     "max": np.maximum,
-    "step": lambda edge, value: np.where(value < edge, 0, 1).astype(value.dtype),
+    "step": _as_number(lambda edge, value: np.greater_equal(value, edge)),
     "mix": lambda first, second, share: first * (1 - share) + second * share,
     "smoothstep": _smoothstep,
     "length": _length,

@@ -71,8 +71,8 @@ def icosahedron() -> Mesh:
     joined = (distance > 0.0) & (distance < 1.1)
     a, b, c = np.nonzero(joined[:, :, None] & joined[:, None, :] & joined[None])
     triangles = np.stack([a, b, c], axis=1)[(a < b) & (b < c)]
-    outward = np.einsum("ij,ij->i", np.cross(vertices[triangles[:, 0]], vertices[triangles[:, 1]]), vertices[triangles[:, 2]])
-    triangles[outward < 0.0] = triangles[outward < 0.0][:, ::-1]
+    inward = np.linalg.det(vertices[triangles]) < 0.0
+    triangles[inward] = triangles[inward][:, ::-1]
     return vertices, triangles.astype(np.int32)
 
 
@@ -91,7 +91,8 @@ def quartered(vertices: Vertices, triangles: Triangles) -> Mesh:
 
 def quads_to_triangles(a: NDArray[np.intp], b: NDArray[np.intp], c: NDArray[np.intp], d: NDArray[np.intp]) -> Triangles:
     """Two triangles for each quadrangle a, b, c, d given counter-clockwise by vertex index."""
-    return np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)], axis=-2).reshape(-1, 3).astype(np.int32)
+    halves = [np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)]
+    return np.stack(halves, axis=-2).reshape(-1, 3).astype(np.int32)
 
 
 def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

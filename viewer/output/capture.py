@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +45,8 @@ def write_png(pixels: Pixels, path: Path) -> None:
         Image.fromarray(pixels).save(temporary, "PNG", compress_level=4)
 
 
-def capture(stage: Stage, frames: Sequence[int], folder: Path, pixels: Callable[[], Pixels] | None = None) -> list[Path]:
+def capture(stage: Stage, frames: Sequence[int], folder: Path,
+            pixels: Callable[[], Pixels] | None = None) -> list[Path]:
     """Write ``folder/SCENE-000030.png`` for each of ``frames``; returns the files.
 
     ``pixels`` gives a frame's picture; by default the stage's own. Long captures show a progress bar.
@@ -59,7 +60,8 @@ def capture(stage: Stage, frames: Sequence[int], folder: Path, pixels: Callable[
     return files
 
 
-def capture_timed(stage: Stage, frames: Sequence[int], folder: Path, pixels: Callable[[], Pixels] | None = None) -> str:
+def capture_timed(stage: Stage, frames: Sequence[int], folder: Path,
+                  pixels: Callable[[], Pixels] | None = None) -> str:
     """Like ``capture``; returns what to tell the user: each file, or for many the folder and the speed."""
     start = time.perf_counter()
     files = capture(stage, frames, folder, pixels)
@@ -71,10 +73,11 @@ def capture_timed(stage: Stage, frames: Sequence[int], folder: Path, pixels: Cal
             f"in {seconds:.1f} s ({len(files) / seconds:.1f} frames/s)")
 
 
-def _with_progress(frames: Sequence[int], name: str) -> Iterable[int] | Iterator[int]:
+def _with_progress(frames: Sequence[int], name: str) -> Iterable[int]:
     if len(frames) < FRAMES_WORTH_A_BAR:
         return frames
     from tqdm import tqdm
 
     interval = 0.2 if sys.stderr.isatty() else 10.0
-    return tqdm(frames, desc=name, unit=" frames", mininterval=interval, file=sys.stderr)
+    bar: Iterable[int] = tqdm(frames, desc=name, unit=" frames", mininterval=interval, file=sys.stderr)
+    return bar

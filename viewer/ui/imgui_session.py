@@ -86,7 +86,8 @@ class ImguiSession:
         io.set_ini_filename("")
         io.set_log_filename("")
         io.config_error_recovery_enable_assert = False
-        io.config_error_recovery_enable_debug_log = False
+        io.config_error_recovery_enable_debug_log = True   # ImGui insists on one way of telling; this one is silent:
+        imgui.get_current_context().debug_log_flags = 0
         io.config_error_recovery_enable_tooltip = False
         io.config_windows_move_from_title_bar_only = True
         io.config_input_text_cursor_blink = False   # idle frames stay the same to the bit

@@ -41,7 +41,8 @@ def _scale_slider(bench: Workbench) -> None:
     imgui.set_next_item_width(9.0 * imgui.get_font_size())
     storage, key = imgui.get_state_storage(), imgui.get_id("scale")
     percent = storage.get_int(key, 0) or round(100 * bench.view.scale)
-    _, percent = imgui.slider_int("Size of text##scale", percent, round(100 * SCALES[0]), round(100 * SCALES[-1]), "%d %%")
+    low, high = round(100 * SCALES[0]), round(100 * SCALES[-1])
+    _, percent = imgui.slider_int("Size of text##scale", percent, low, high, "%d %%")
     storage.set_int(key, percent if imgui.is_item_active() else 0)
     if imgui.is_item_deactivated_after_edit():
         bench.view.scale = max(SCALES[0], min(SCALES[-1], percent / 100.0))

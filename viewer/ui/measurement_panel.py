@@ -1,0 +1,85 @@
+"""The scene's numbers, large enough for the last row, and its curves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui, implot
+
+from viewer.ui import theme
+from viewer.ui.guard import show_failure
+from viewer.ui.measurer import Plot
+from viewer.ui.typography import heading
+
+if TYPE_CHECKING:
+    from viewer.ui.workbench import Workbench
+
+PLOT_EMS = 15.0
+PLOT_FLAGS = implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_title | implot.Flags_.no_mouse_text
+AXIS_FLAGS = implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight
+
+
+class MeasurementPanel:
+    """Shows the latest report; the measurer decides when there is a new one."""
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench = bench
+
+    def draw(self) -> None:
+        """Readouts, then plots."""
+        measurer = self.bench.measurer
+        if measurer is None:
+            return
+        if measurer.failure:
+            show_failure(measurer.failure)
+        report = measurer.report
+        if report is None:
+            return
+        if not report.readouts and not report.plots:
+            imgui.text_disabled("This scene measures nothing")
+        if report.readouts and imgui.begin_table("readouts", 2, imgui.TableFlags_.sizing_stretch_prop):
+            for name, value in report.readouts:
+                self._readout(name, value)
+            imgui.end_table()
+        for plot in report.plots:
+            self._plot(plot)
+
+    def _readout(self, name: str, value: str) -> None:
+        imgui.table_next_row()
+        imgui.table_next_column()
+        imgui.push_style_color(imgui.Col_.text, theme.QUIET_TEXT)
+        imgui.text_wrapped(name)
+        imgui.pop_style_color()
+        imgui.table_next_column()
+        imgui.push_font(self.bench.session.fonts.bold, 0.0)
+        shift = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, shift))
+        imgui.text_unformatted(value)
+        imgui.pop_font()
+
+    def _plot(self, plot: Plot) -> None:
+        imgui.dummy(imgui.ImVec2(0, 0.2 * imgui.get_font_size()))
+        heading(plot.title, self.bench.session.fonts)
+        height = min(PLOT_EMS * imgui.get_font_size(), 0.9 * imgui.get_content_region_avail().x)
+        if not implot.begin_plot(f"##{plot.title}", imgui.ImVec2(-1, height), PLOT_FLAGS):
+            return
+        try:
+            _axes(plot)
+            for index, (name, x, y) in enumerate(plot.series):
+                spec = implot.Spec()
+                spec.line_color = imgui.ImVec4(*theme.SERIES[index % len(theme.SERIES)])
+                spec.line_weight = 0.12 * imgui.get_font_size()
+                implot.plot_line(name, x, y, spec)
+        finally:
+            implot.end_plot()
+
+
+def _axes(plot: Plot) -> None:
+    curve = plot.curve
+    implot.setup_axes(curve.x_label or curve.x_name, curve.y_label, AXIS_FLAGS, AXIS_FLAGS)
+    if curve.log_x:
+        implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
+    if curve.log_y:
+        implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+    implot.setup_legend(implot.Location_.north, implot.LegendFlags_.outside | implot.LegendFlags_.horizontal
+                        | implot.LegendFlags_.no_buttons)
