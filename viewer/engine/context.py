@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 
@@ -55,12 +56,10 @@ def open_headless() -> moderngl.Context:
     Raises ContextError. With EGL no framebuffer exists until one is made and bound.
     """
     try:
-        backend = {"backend": "egl"} if sys.platform.startswith("linux") else {}
-        context = moderngl.create_context(standalone=True, require=GL_VERSION, **backend)
+        backend: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+        return moderngl.create_context(standalone=True, require=GL_VERSION, **backend)
     except Exception as error:
         raise plain_words(error) from error
-    context.gc_mode = None
-    return context
 
 
 def has_display() -> bool:

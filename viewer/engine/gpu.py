@@ -71,12 +71,10 @@ class Gpu:
         self.programs.append(program)
         return program
 
-    def buffer(self, data: ArrayLike | bytes | None = None, *, reserve: int = 0, label: str = "") -> moderngl.Buffer:
+    def buffer(self, data: ArrayLike | None = None, *, reserve: int = 0, label: str = "") -> moderngl.Buffer:
         """A buffer with the bytes of ``data``, or with room for ``reserve`` bytes."""
-        if data is None:
-            made = self.context.buffer(reserve=reserve)
-        else:
-            made = self.context.buffer(data if isinstance(data, bytes) else np.ascontiguousarray(data))
+        content = None if data is None else np.ascontiguousarray(data)
+        made = self.context.buffer(content, reserve=reserve)
         self.own(made, label)
         return made
 
@@ -104,15 +102,8 @@ class Gpu:
         self.own(made, label)
         return made
 
-    def renderbuffer(self, size: tuple[int, int], components: int, *, samples: int = 0, dtype: str = "f1",
-                     label: str = "") -> moderngl.Renderbuffer:
-        """A colour buffer that is drawn into but not sampled."""
-        self.check_size(size, "a picture")
-        made = self.context.renderbuffer(size, components, samples=samples, dtype=dtype)
-        self.own(made, label)
-        return made
-
-    def depth_renderbuffer(self, size: tuple[int, int], *, samples: int = 0, label: str = "") -> moderngl.Renderbuffer:
+    def depth_renderbuffer(self, size: tuple[int, int], *, samples: int = 0,
+                           label: str = "") -> moderngl.Renderbuffer:
         """A depth buffer that is drawn into but not sampled."""
         made = self.context.depth_renderbuffer(size, samples=samples)
         self.own(made, label)

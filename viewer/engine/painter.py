@@ -104,7 +104,7 @@ class Painter:
     def _plain_state(self) -> None:
         self.context.enable_only(moderngl.DEPTH_TEST)
         self.context.depth_func = "<"
-        self.context.blend_func = moderngl.DEFAULT_BLENDING
-        self.context.blend_equation = moderngl.FUNC_ADD
+        self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        self.context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         self.context.cull_face = "back"
         self.context.front_face = "ccw"

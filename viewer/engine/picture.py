@@ -10,6 +10,7 @@ from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.program import VertexArray
 
 MOST_SAMPLES = 16
+MOST_BYTES = 4 * 2**30
 
 
 class Picture:
@@ -19,13 +20,18 @@ class Picture:
         gpu.check_size(size, "a picture")
         if not 0 <= samples <= MOST_SAMPLES:
             raise GpuError(f"samples = {samples} is outside 0 to {MOST_SAMPLES}")
+        needed = size[0] * size[1] * (12 * max(1, samples) + 4)
+        if needed > MOST_BYTES:
+            raise GpuError(f"a picture of {size[0]}x{size[1]} with {samples} samples needs {needed / 2**30:.1f} GiB; "
+                           f"at most {MOST_BYTES / 2**30:.0f} GiB is allowed")
         self.size = size
         self.gpu = gpu
         self.samples = min(samples, gpu.context.max_samples) if samples > 1 else 0
         self._linear = self._target()
         self.texture = gpu.texture(size, 4, label="finished picture")
         self._finished = gpu.framebuffer([self.texture], label="finished")
-        program = gpu.program("studio/screen.vert", "studio/finish_samples.frag" if self.samples else "studio/finish.frag")
+        finish = "studio/finish_samples.frag" if self.samples else "studio/finish.frag"
+        program = gpu.program("studio/screen.vert", finish)
         program["u_linear"] = 0
         if self.samples:
             program["u_samples"] = self.samples

@@ -65,4 +65,4 @@ class StudioSet:
         return orthographic(self.plan.radius, self.plan.radius, 3.0 * self.plan.radius)
 
     def _world_to_shadow(self) -> Matrix:
-        return self._light_view() @ self._light_projection() @ CLIP_TO_TEXTURE
+        return np.asarray(self._light_view() @ self._light_projection() @ CLIP_TO_TEXTURE)

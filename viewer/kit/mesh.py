@@ -105,7 +105,7 @@ def vertex_areas(vertices: Vertices, triangles: Triangles) -> NDArray[np.float64
     """The area that each vertex stands for: a third of the triangles around it; (n,)."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return np.bincount(triangles.ravel(), np.repeat(area / 3.0, 3), minlength=len(vertices))
+    return np.asarray(np.bincount(triangles.ravel(), np.repeat(area / 3.0, 3), minlength=len(vertices)), np.float64)
 
 
 def fibonacci_sphere(count: int) -> Vertices:

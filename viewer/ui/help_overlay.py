@@ -31,10 +31,10 @@ def draw(bench: Workbench) -> None:
                 | imgui.WindowFlags_.always_auto_resize)
     imgui.set_window_focus()
     _columns(bench, columns)
-    clicked_beside = imgui.is_mouse_clicked(0) and not imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
+    inside = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
     imgui.end()
     imgui.pop_style_var()
-    if clicked_beside:
+    if imgui.is_mouse_clicked(0) and not inside:
         bench.view.help = False
 
 

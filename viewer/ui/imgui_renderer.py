@@ -103,7 +103,7 @@ class ImguiRenderer:
         context = self.context
         context.enable_only(moderngl.BLEND)
         context.blend_equation = moderngl.FUNC_ADD
-        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        context.blend_func = *moderngl.DEFAULT_BLENDING, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         scale = 2.0 / data.display_size.x, -2.0 / data.display_size.y
         self._program["u_scale"] = scale
         self._program["u_offset"] = -1.0 - data.display_pos.x * scale[0], 1.0 - data.display_pos.y * scale[1]

@@ -50,6 +50,7 @@ class LiveStage:
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
         self.cpu_milliseconds = 0.0
+        self.gpu_milliseconds: float | None = None
         self._failure: Problem | None = None
         self._shader_problem: Problem | None = None
         self._scene_problem: Problem | None = None
@@ -110,7 +111,9 @@ class LiveStage:
 
     def resize(self, size: tuple[int, int]) -> None:
         """Draw pictures of ``size`` from now on."""
-        self.attempt(lambda: self.stage.resize(size))
+        if size != self.stage.size:
+            self._drawn = None
+            self.attempt(lambda: self.stage.resize(size))
 
     def render(self) -> None:
         """Draw the picture if anything that it shows has changed; the last good one stays otherwise."""
@@ -136,7 +139,7 @@ class LiveStage:
     def _read_query(self) -> None:
         """Last frame's time on the GPU: read now, it is long finished and nothing waits."""
         if self._query_pending:
-            self.stage.gpu_milliseconds = self._query.elapsed * 1e-6
+            self.gpu_milliseconds = self._query.elapsed * 1e-6
             self._query_pending = False
 
     def _state(self) -> tuple[object, ...]:

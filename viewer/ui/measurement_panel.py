@@ -37,23 +37,23 @@ class MeasurementPanel:
             return
         if not report.readouts and not report.plots:
             imgui.text_disabled("This scene measures nothing")
-        if report.readouts and imgui.begin_table("readouts", 2, imgui.TableFlags_.sizing_stretch_prop):
-            for name, value in report.readouts:
-                self._readout(name, value)
-            imgui.end_table()
+        for name, value in report.readouts:
+            self._readout(name, value)
         for plot in report.plots:
             self._plot(plot)
 
     def _readout(self, name: str, value: str) -> None:
-        imgui.table_next_row()
-        imgui.table_next_column()
+        """Name on the left, value on the right; under it where they do not fit side by side."""
+        room = imgui.get_content_region_avail().x
         imgui.push_style_color(imgui.Col_.text, theme.QUIET_TEXT)
-        imgui.text_wrapped(name)
+        imgui.text_unformatted(name)
         imgui.pop_style_color()
-        imgui.table_next_column()
+        wide = imgui.get_item_rect_size().x
         imgui.push_font(self.bench.session.fonts.bold, 0.0)
-        shift = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
-        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(0.0, shift))
+        own = imgui.calc_text_size(value).x
+        if wide + own + imgui.get_font_size() <= room:
+            imgui.same_line()
+        imgui.set_cursor_pos_x(max(0.0, imgui.get_cursor_start_pos().x + room - own))
         imgui.text_unformatted(value)
         imgui.pop_font()
 

@@ -64,7 +64,7 @@ class PerformancePanel:
         live = self.bench.live
         if live is None:
             return
-        gpu = live.stage.gpu_milliseconds
+        gpu = live.gpu_milliseconds
         known = self._milliseconds[self._milliseconds > 0.0]
         self._rate = f"{1e3 / known.mean():.0f} fps" if known.size else f"{DASH} fps"
         cpu, panels = (DASH, DASH) if self.bench.steady else (

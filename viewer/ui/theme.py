@@ -82,7 +82,6 @@ def apply(scale: float, dpi: float) -> None:
     style.font_size_base = FONT_PIXELS
     style.font_scale_main = scale
     style.font_scale_dpi = dpi
-    imgui.get_io()
     _install(style)
     _dress_plots(scale * dpi)
 
@@ -98,7 +97,8 @@ def _shape(style: imgui.Style) -> None:
     style.child_border_size = 0
     style.popup_border_size = 1
     style.frame_rounding = style.grab_rounding = 3
-    style.popup_rounding = style.window_rounding = style.scrollbar_rounding = 4
+    style.popup_rounding = style.scrollbar_rounding = 4
+    style.window_rounding = 0
     style.tab_rounding = 3
     style.tab_bar_border_size = 1
     style.hover_delay_normal = 0.35

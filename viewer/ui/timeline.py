@@ -52,7 +52,7 @@ class Timeline:
         imgui.text_unformatted(f"{stage.clock.seconds:.2f} s")
         imgui.pop_style_color()
         width = 5.0 * imgui.get_font_size()
-        imgui.same_line(max(0.0, imgui.get_content_region_max().x - width))
+        imgui.same_line(max(0.0, imgui.get_window_width() - width))
         self._speed(stage, width)
         self._scrub(stage, imgui.get_content_region_avail().x)
 
