@@ -25,8 +25,8 @@ float glossy_reflection(vec3 normal, vec3 to_light, vec3 to_eye, float roughness
 }
 
 vec3 studio_light(vec3 position, vec3 normal, vec3 albedo, float roughness) {
-    vec3 to_eye = normalize(u_eye - position);
-    float facing_key = dot(normal, u_key_direction);
+    vec3 to_eye = normalize(u_frame.eye - position);
+    float facing_key = dot(normal, u_frame.key_direction);
     vec3 light = albedo * mix(FLOOR_LIGHT, SKY_LIGHT, 0.5 + 0.5 * normal.y);
 
     vec3 fill_direction = normalize(vec3(0.8, 0.15, 0.5));
@@ -34,7 +34,7 @@ vec3 studio_light(vec3 position, vec3 normal, vec3 albedo, float roughness) {
 
     if (facing_key > 0.0) {
         float reaching = key_light_on_surface(position, normal);
-        vec3 mirrored = vec3(glossy_reflection(normal, u_key_direction, to_eye, roughness));
+        vec3 mirrored = vec3(glossy_reflection(normal, u_frame.key_direction, to_eye, roughness));
         light += KEY_LIGHT * facing_key * reaching * (albedo / PI + mirrored);
     }
     float grazing = 1.0 - max(dot(normal, to_eye), 0.0);

@@ -15,13 +15,13 @@ float share_lit(vec2 moments, float depth) {
 }
 
 float key_light_on_surface(vec3 position, vec3 normal) {
-    vec3 place = (u_world_to_shadow * vec4(position + 0.01 * u_radius * normal, 1.0)).xyz;
+    vec3 place = (u_frame.world_to_shadow * vec4(position + 0.01 * u_frame.radius * normal, 1.0)).xyz;
     float lit = share_lit(texture(u_shadow_near, place.xy).rg, place.z);
     return clamp((lit - 0.15) / 0.85, 0.0, 1.0);       // light that leaks where shadows overlap
 }
 
 float key_light_on_floor(vec3 position) {
-    vec3 place = (u_world_to_shadow * vec4(position, 1.0)).xyz;
+    vec3 place = (u_frame.world_to_shadow * vec4(position, 1.0)).xyz;
     vec2 from_middle = abs(place.xy - 0.5);
     float outside = smoothstep(0.44, 0.48, max(from_middle.x, from_middle.y));
     if (outside == 1.0)

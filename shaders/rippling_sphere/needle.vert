@@ -19,5 +19,5 @@ void main() {
     vec3 across = in_corner.x * first + in_corner.y * second;
     v_normal = across;
     v_position = rippled(in_root) + u_needle_length * (0.035 * across + in_corner.z * along);
-    gl_Position = u_view_projection * vec4(v_position, 1.0);
+    gl_Position = u_frame.view_projection * vec4(v_position, 1.0);
 }

@@ -17,8 +17,15 @@ const int CENTRAL = 5;            // differences of neighbours at p - epsilon, p
 
 // How far the vertex moves. Where the formula has no value there is no ripple.
 float ripple_height(vec3 p) {
-    float height = displacement(p, u_time);
+    float height = displacement(p, u_frame.time);
     return abs(height) <= 100.0 ? height : 0.0;
+}
+
+// How steeply that changes in x, y and z, by the formula's own derivatives.
+vec3 ripple_slope(vec3 p) {
+    vec3 slope = displacement_gradient(p, u_frame.time);
+    bool has_value = abs(displacement(p, u_frame.time)) <= 100.0 && dot(slope, slope) < 1e12;
+    return has_value ? slope : vec3(0.0);
 }
 
 vec3 rippled(vec3 p) {
@@ -29,7 +36,7 @@ vec3 rippled(vec3 p) {
 // Moving p by d(p) turns an area's normal n into cof(I + grad d) n. With d = f along x, and with
 // d = f along n, the cofactors work out to these two lines.
 vec3 exact_normal(vec3 p) {
-    vec3 slope = displacement_gradient(p, u_time);
+    vec3 slope = ripple_slope(p);
     if (u_direction == ALONG_X)
         return (1.0 + slope.x) * p - p.x * slope;
     float stretch = 1.0 + ripple_height(p);
@@ -63,8 +70,8 @@ vec3 central_normal(vec3 p, float epsilon) {
 
 vec3 ripple_normal(vec3 p, int way, float epsilon) {
     vec3 normal = p;
-    if (way == NOTES) normal = p + displacement_gradient(p, u_time);
-    if (way == GRADIENT) normal = p - displacement_gradient(p, u_time);
+    if (way == NOTES) normal = p + ripple_slope(p);
+    if (way == GRADIENT) normal = p - ripple_slope(p);
     if (way == EXACT) normal = exact_normal(p);
     if (way == FORWARD) normal = forward_normal(p, epsilon);
     if (way == CENTRAL) normal = central_normal(p, epsilon);

@@ -15,7 +15,7 @@ in vec3 v_exact_normal;
 out vec4 out_color;
 
 void main() {
-    float from_wipe = gl_FragCoord.x - (1.0 - u_wipe) * u_resolution.x;
+    float from_wipe = gl_FragCoord.x - (1.0 - u_wipe) * u_frame.resolution.x;
     vec3 exact = normalize(v_exact_normal);
     vec3 normal = from_wipe > 0.0 ? exact : normalize(v_normal);
     vec3 color = studio_light(v_position, normal, u_color, 0.35);
@@ -25,7 +25,7 @@ void main() {
         float degrees_off = degrees(atan(length(cross(normal, exact)), dot(normal, exact)));
         color = viridis(degrees_off / u_error_scale);
     }
-    if (u_wipe > 0.0 && u_wipe < 1.0 && abs(from_wipe) < 0.0012 * u_resolution.x)
+    if (u_wipe > 0.0 && u_wipe < 1.0 && abs(from_wipe) < 0.0012 * u_frame.resolution.x)
         color = vec3(0.02);
     out_color = vec4(color, 1.0);
 }

@@ -15,5 +15,5 @@ void main() {
     v_position = rippled(in_position);
     v_normal = ripple_normal(in_position, u_normals, u_epsilon);
     v_exact_normal = ripple_normal(in_position, EXACT, u_epsilon);
-    gl_Position = u_view_projection * vec4(v_position, 1.0);
+    gl_Position = u_frame.view_projection * vec4(v_position, 1.0);
 }

@@ -9,11 +9,11 @@ out vec4 out_color;
 
 void main() {
     vec3 wall = backdrop(gl_FragCoord.xy);
-    float distance_out = length(v_position.xz - u_center.xz) / u_radius;
+    float distance_out = length(v_position.xz - u_frame.center.xz) / u_frame.radius;
     float presence = 1.0 - smoothstep(1.0, 6.0, distance_out);
     float reaching = key_light_on_floor(v_position);
-    vec3 below = vec3(u_center.x, u_ground_height, u_center.z);
-    float nearness = 1.0 - smoothstep(0.0, 1.6, length(v_position - below) / u_radius);
+    vec3 below = vec3(u_frame.center.x, u_frame.ground_height, u_frame.center.z);
+    float nearness = 1.0 - smoothstep(0.0, 1.6, length(v_position - below) / u_frame.radius);
     float light = mix(0.30, 1.0, reaching) * (1.0 - 0.25 * nearness);
     out_color = vec4(wall * mix(1.0, 1.12 * light, presence), 1.0);
 }

@@ -16,17 +16,17 @@ SHADOW_NEAR_UNIT = 15
 SHADOW_WIDE_UNIT = 14
 
 FRAME = np.dtype([
-    ("u_view", "f4", (4, 4)),
-    ("u_projection", "f4", (4, 4)),
-    ("u_view_projection", "f4", (4, 4)),
-    ("u_clip_to_world", "f4", (4, 4)),
-    ("u_world_to_shadow", "f4", (4, 4)),
-    ("u_eye", "f4", 3), ("u_time", "f4"),
-    ("u_resolution", "f4", 2), ("u_frame", "f4"), ("u_padding", "f4"),
-    ("u_key_direction", "f4", 3), ("u_ground_height", "f4"),
-    ("u_center", "f4", 3), ("u_radius", "f4"),
-    ("u_backdrop_low", "f4", 3), ("u_has_ground", "f4"),
-    ("u_backdrop_high", "f4", 3), ("u_padding_too", "f4"),
+    ("view", "f4", (4, 4)),
+    ("projection", "f4", (4, 4)),
+    ("view_projection", "f4", (4, 4)),
+    ("clip_to_world", "f4", (4, 4)),
+    ("world_to_shadow", "f4", (4, 4)),
+    ("eye", "f4", 3), ("time", "f4"),
+    ("resolution", "f4", 2), ("number", "f4"), ("has_ground", "f4"),
+    ("key_direction", "f4", 3), ("ground_height", "f4"),
+    ("center", "f4", 3), ("radius", "f4"),
+    ("backdrop_low", "f4", 4),
+    ("backdrop_high", "f4", 4),
 ])
 
 

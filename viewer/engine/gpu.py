@@ -80,7 +80,7 @@ class Gpu:
 
     def texture(self, size: tuple[int, int], components: int, data: ArrayLike | None = None, *,
                 samples: int = 0, dtype: str = "f1", label: str = "") -> moderngl.Texture:
-        """A 2D texture, or a multisampled one to draw into; raises GpuError where ``size`` is beyond the driver's limit."""
+        """A 2D texture, or with ``samples`` one to draw into; raises GpuError where ``size`` is beyond the limit."""
         self.check_size(size, "a texture")
         pixels = None if data is None else np.ascontiguousarray(data)
         made = self.context.texture(size, components, pixels, samples=samples, dtype=dtype)

@@ -51,8 +51,8 @@ class Painter:
         """Write the frame block for ``camera`` at ``frame``, so that shaders may run."""
         view, projection = camera.view(), camera.projection(self.picture.size[0] / self.picture.size[1])
         both = view @ projection
-        self._write(frame, {"u_view": view, "u_projection": projection, "u_view_projection": both,
-                            "u_clip_to_world": np.linalg.inv(both), "u_eye": camera.eye})
+        self._write(frame, {"view": view, "projection": projection, "view_projection": both,
+                            "clip_to_world": np.linalg.inv(both), "eye": camera.eye})
 
     def resize(self, size: tuple[int, int], samples: int) -> None:
         """Pictures of another size from now on; raises GpuError beyond the driver's limits, changing nothing."""
@@ -97,8 +97,8 @@ class Painter:
         self._shadow_shows = shows
 
     def _write(self, frame: int, camera: Mapping[str, Any]) -> None:
-        self._block.write({**self.studio.frame_values(), **camera, "u_time": frame * FRAME_SECONDS,
-                           "u_frame": frame, "u_resolution": self.picture.size})
+        self._block.write({**self.studio.frame_values(), **camera, "time": frame * FRAME_SECONDS,
+                           "number": frame, "resolution": self.picture.size})
         self._block.bind()
 
     def _plain_state(self) -> None:

@@ -128,14 +128,23 @@ class Parameters:
         return {name: field.stored(self.get(name)) for name, field in self.fields.items()}
 
     def uniforms(self) -> dict[str, Uniform]:
-        """What shaders get, by uniform name (``u_amplitude``)."""
+        """What shaders get, by uniform name: ``u_amplitude``, and for formulas what they mention."""
         values = {f"u_{name}": field.uniform(self.get(name)) for name, field in self.fields.items()}
+        for name, field in self.declared.items():
+            if isinstance(field, FormulaField):
+                numbers = self.numbers(self.get(name))
+                values |= {formula_uniform(name, number): value for number, value in numbers.items()}
         return {name: value for name, value in values.items() if value is not None}
 
     def numbers(self, formula: Formula) -> dict[str, float]:
         """The parameters that ``formula`` mentions, as numbers to evaluate it with."""
         names = [name for name in formula.variables if name in self.fields]
         return {name: float(self.get(name)) for name in names}
+
+
+def formula_uniform(formula: str, name: str) -> str:
+    """The uniform through which ``formula`` gets the number ``name``; its own, lest a shader declares both."""
+    return f"u_{formula}_{name}".replace("__", "_0_")
 
 
 def _differs(field: Field[Any], before: Any, after: Any) -> bool:

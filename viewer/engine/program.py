@@ -157,10 +157,8 @@ class Program:
 
 
 def _mention_time(sources: Iterable[Source]) -> bool:
-    """Whether shaders mention the time anywhere but in the frame block's declaration."""
-    return any(name in line for source in sources
-               for line, (place, _) in zip(source.lines, source.origins, strict=True)
-               if place != "lib/frame.glsl" for name in ("u_time", "u_frame"))
+    """Whether shaders mention the time."""
+    return any(name in line for source in sources for line in source.lines for name in ("u_frame.time", "u_frame.number"))
 
 
 class VertexArray:

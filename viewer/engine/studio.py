@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike
 
-from viewer.engine.fields import Color
+from viewer.engine.fields import Color, linear_light
 from viewer.engine.gpu import Gpu
 from viewer.engine.matrices import Matrix, look_at, orthographic
 from viewer.engine.scene import Studio
@@ -30,13 +30,13 @@ class StudioSet:
 
     def frame_values(self) -> dict[str, ArrayLike]:
         """The studio's part of the frame block."""
-        low, high = (Color(name, "").uniform(Color(name, "").default) for name in self.plan.backdrop)
+        low, high = ((*map(linear_light, Color(name, "").default), 1.0) for name in self.plan.backdrop)
         height = self.plan.ground
         return {
-            "u_world_to_shadow": self._world_to_shadow(),
-            "u_key_direction": KEY_DIRECTION, "u_center": self.plan.center, "u_radius": self.plan.radius,
-            "u_ground_height": height or 0.0, "u_has_ground": float(height is not None),
-            "u_backdrop_low": low, "u_backdrop_high": high,
+            "world_to_shadow": self._world_to_shadow(),
+            "key_direction": KEY_DIRECTION, "center": self.plan.center, "radius": self.plan.radius,
+            "ground_height": height or 0.0, "has_ground": float(height is not None),
+            "backdrop_low": low, "backdrop_high": high,
         }
 
     def light_values(self) -> dict[str, ArrayLike]:
@@ -44,8 +44,8 @@ class StudioSet:
         view, projection = self._light_view(), self._light_projection()
         both = view @ projection
         eye = np.asarray(self.plan.center) + 2.0 * self.plan.radius * KEY_DIRECTION
-        return {"u_view": view, "u_projection": projection, "u_view_projection": both,
-                "u_clip_to_world": np.linalg.inv(both), "u_eye": eye}
+        return {"view": view, "projection": projection, "view_projection": both,
+                "clip_to_world": np.linalg.inv(both), "eye": eye}
 
     def draw(self) -> None:
         """Fill what the scene left empty: the floor, then the backdrop behind everything."""

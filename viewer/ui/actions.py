@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 Key = imgui.Key
-CTRL, SHIFT = int(Key.mod_ctrl), int(Key.mod_shift)   # ImGui swaps Ctrl and Cmd on a Mac by itself
+CTRL, SHIFT, MODIFIERS = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_mask_)   # ImGui swaps Ctrl and Cmd on a Mac by itself
 KEY_NAMES = {
     Key.space: "Space", Key.period: ".", Key.comma: ",", Key.equal: "+", Key.minus: "-", Key._0: "0",
     Key.escape: "Esc", Key.home: "Home", Key.keypad_add: "+", Key.keypad_subtract: "-",
@@ -73,34 +73,30 @@ ACTIONS: tuple[Action, ...] = (
 
 MOUSE = (
     ("Left drag", "Turn the camera"),
-    ("Right, middle or Shift + left drag", "Move the camera"),
+    ("Right, Shift+drag", "Move the camera"),
     ("Wheel, two fingers", "Come closer, go back"),
     ("Double click", "Reset the camera"),
-    (f"{'Cmd' if sys.platform == 'darwin' else 'Ctrl'} + click a slider", "Type its value"),
+    (f"{'Cmd' if sys.platform == 'darwin' else 'Ctrl'} +click", "Type the value of a slider"),
 )
+
+
+# (modifiers, key, action) of every chord: looked through in each frame
+CHORDS = tuple((chord & MODIFIERS, Key(chord & ~MODIFIERS), action) for action in ACTIONS for chord in action.chords)
 
 
 def run_pressed(bench: Workbench) -> None:
     """Do what the keys pressed in this frame ask for; plain letters go to a text that is being typed."""
     io = imgui.get_io()
-    for action in ACTIONS:
-        if io.want_text_input and not action.while_typing:
-            continue
-        if any(_pressed(chord, action.repeats) for chord in action.chords):
+    typing, modifiers = io.want_text_input, int(io.key_mods)
+    for wanted, key, action in CHORDS:
+        if wanted == modifiers and imgui.is_key_pressed(key, action.repeats) and (action.while_typing or not typing):
             action.run(bench)
-    if not io.want_text_input and any(chr(code) == TYPED_HELP for code in io.input_queue_characters):
+    if not typing and any(chr(code) == TYPED_HELP for code in io.input_queue_characters):
         bench.toggle("help")
 
 
 def chord_text(chord: int) -> str:
     """``Ctrl+Shift+Z``; ``Cmd`` on a Mac."""
-    key = Key(chord & ~int(Key.mod_mask_))
+    key = Key(chord & ~MODIFIERS)
     names = ["Cmd" if sys.platform == "darwin" else "Ctrl"] * bool(chord & CTRL) + ["Shift"] * bool(chord & SHIFT)
     return "+".join([*names, KEY_NAMES.get(key, imgui.get_key_name(key))])
-
-
-def _pressed(chord: int, repeats: bool) -> bool:
-    modifiers = chord & int(Key.mod_mask_)
-    if int(imgui.get_io().key_mods) != modifiers:
-        return False
-    return imgui.is_key_pressed(Key(chord & ~int(Key.mod_mask_)), repeats)

@@ -13,8 +13,9 @@ from viewer.ui.typography import FLOATING, heading
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
-KEY_EMS = 8.0
-TWO_COLUMNS_FROM = 46.0
+KEY_EMS = 8.5
+COLUMN_EMS = 22.0
+TWO_COLUMNS_FROM = 48.0
 
 
 def draw(bench: Workbench) -> None:
@@ -24,8 +25,8 @@ def draw(bench: Workbench) -> None:
     view, em = imgui.get_main_viewport(), imgui.get_font_size()
     columns = 2 if view.size.x > TWO_COLUMNS_FROM * em else 1
     imgui.set_next_window_pos(view.get_center(), imgui.Cond_.always, imgui.ImVec2(0.5, 0.5))
-    width = min(21.0 * em * columns + 4.0 * em, view.size.x - em)
-    imgui.set_next_window_size_constraints(imgui.ImVec2(width, 0), imgui.ImVec2(width, max(1.0, view.size.y - em)))
+    most = imgui.ImVec2(max(1.0, view.size.x - em), max(1.0, view.size.y - em))
+    imgui.set_next_window_size_constraints(imgui.ImVec2(0, 0), most)
     imgui.push_style_var(imgui.StyleVar_.window_padding, imgui.ImVec2(1.4 * em, 1.1 * em))
     imgui.begin("Keys and mouse", None, (FLOATING & ~imgui.WindowFlags_.no_scrollbar)
                 | imgui.WindowFlags_.always_auto_resize)
@@ -44,7 +45,9 @@ def _columns(bench: Workbench, columns: int) -> None:
         if action.keys:
             groups.setdefault(action.menu, []).append((action.keys, action.title))
     order = ["Play", "Edit", "Picture", "Help", "View", "Mouse"]
-    if imgui.begin_table("columns", columns):
+    if imgui.begin_table("columns", columns, imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x):
+        for index in range(columns):
+            imgui.table_setup_column(str(index), imgui.TableColumnFlags_.width_fixed, COLUMN_EMS * imgui.get_font_size())
         imgui.table_next_column()
         for name in order:
             if columns == 2 and name == "View":
@@ -57,13 +60,9 @@ def _columns(bench: Workbench, columns: int) -> None:
 
 
 def _line(keys: str, title: str) -> None:
-    start, em = imgui.get_cursor_pos_x(), imgui.get_font_size()
-    imgui.push_text_wrap_pos(start + KEY_EMS * em - 0.5 * em)
+    start = imgui.get_cursor_pos_x()
     imgui.push_style_color(imgui.Col_.text, theme.ACCENT)
     imgui.text_unformatted(keys)
     imgui.pop_style_color()
-    imgui.pop_text_wrap_pos()
-    imgui.same_line(start + KEY_EMS * em)
-    imgui.push_text_wrap_pos(0.0)
+    imgui.same_line(start + KEY_EMS * imgui.get_font_size())
     imgui.text_unformatted(title)
-    imgui.pop_text_wrap_pos()

@@ -61,7 +61,7 @@ def arrange(size: tuple[int, int], em: float, menu_height: float, view: View) ->
         return Layout(Box(0.0, 0.0, width, height))
     one_column, one_row = width < ONE_COLUMN_BELOW * em, height < ONE_ROW_BELOW * em
     top = min(menu_height, height)
-    below = min((2.5 if one_row else 4.6) * em, 0.3 * height) if view.bottom else 0.0
+    below = min((2.75 if one_row else 4.6) * em, 0.3 * height) if view.bottom else 0.0
     left, right = _columns(width, em, one_column)
     left, right = float(round(left * view.left)), float(round(right * view.right))
     middle = max(0.0, float(round(height - top - below)))

@@ -85,7 +85,7 @@ class Panels:
         if not self.bench.stage:
             return
         if layout.one_column:
-            self._draw_tabs({"Parameters": self._draw_controls} | self._right_tabs())
+            self._draw_tabs({"Tune": self._draw_controls} | self._right_tabs("Measure"))
         else:
             self._draw_controls()
 
@@ -99,8 +99,8 @@ class Panels:
         if self.bench.stage:
             self._draw_tabs(self._right_tabs())
 
-    def _right_tabs(self) -> dict[str, Callable[[], None]]:
-        return {"Measurements": self._draw_measurements, "Lesson": self.lesson.draw, "Code": self.code.draw}
+    def _right_tabs(self, first: str = "Measurements") -> dict[str, Callable[[], None]]:
+        return {first: self._draw_measurements, "Lesson": self.lesson.draw, "Code": self.code.draw}
 
     def _draw_tabs(self, tabs: dict[str, Callable[[], None]]) -> None:
         if not imgui.begin_tab_bar("tabs", imgui.TabBarFlags_.fitting_policy_scroll):

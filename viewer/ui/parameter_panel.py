@@ -29,28 +29,41 @@ class ParameterPanel:
         self._typed = TypedFields(bench)
         self._errors: dict[str, tuple[str, int]] = {}
         self._texts: dict[tuple[str, int, float], str] = {}
+        self._looked_at: object = None
+        self._rows: list[Field[Any]] = []
+        self._changed: set[str] = set()
 
     def forget(self) -> None:
         """Another stage is on, or everything was reset."""
         self._typed = TypedFields(self.bench)
         self._errors.clear()
         self._texts.clear()
+        self._looked_at = None
 
     def draw(self) -> None:
         """Show every parameter."""
         stage = self.bench.stage
         if stage is None:
             return
+        self._look(stage)
         self._title(stage)
         width = imgui.get_content_region_avail().x
-        for field in self._in_order(stage):
+        for field in self._rows:
             imgui.push_id(field.name)
             self._row(stage, field, width)
             imgui.pop_id()
 
+    def _look(self, stage: Stage) -> None:
+        """Find out what the rows are and which differ from the default, when something has changed."""
+        state = id(stage.params), stage.params.revision
+        if state != self._looked_at:
+            self._looked_at = state
+            self._rows = self._in_order(stage)
+            self._changed = {field.name for field in self._rows if not stage.params.is_default(field.name)}
+
     def _title(self, stage: Stage) -> None:
         heading("Parameters", self.bench.session.fonts)
-        if not all(stage.params.is_default(name) for name in stage.params.fields):
+        if self._changed:
             width = imgui.calc_text_size("Reset all").x + 2 * imgui.get_style().frame_padding.x
             imgui.same_line(imgui.get_content_region_avail().x - width)
             if imgui.small_button("Reset all"):
@@ -75,14 +88,15 @@ class ParameterPanel:
         value, reset = stage.params.get(field.name), RESET_EMS * imgui.get_font_size()
         own_line = isinstance(field, FormulaField)
         start = imgui.get_cursor_pos_x()
-        self._label(field, (width if own_line else LABEL_SHARE * width) - 0.4 * imgui.get_font_size())
+        beside = width if own_line else LABEL_SHARE * width
+        self._label(field, beside - reset - 0.2 * imgui.get_font_size())
+        self._reset(stage, field, start + beside - reset)
         if own_line:
-            self._reset(stage, field, start + width - reset)
             self._typed.draw(field, value, width)
             tooltip(lambda: explain(field))
             return
         imgui.same_line(start + LABEL_SHARE * width)
-        room = (1.0 - LABEL_SHARE) * width - reset
+        room = (1.0 - LABEL_SHARE) * width
         if field.kind in WIDGETS:
             new = draw_value(field, value, room)
             tooltip(lambda: explain(field))
@@ -92,7 +106,6 @@ class ParameterPanel:
             imgui.begin_group()
             self._typed.draw(field, value, room)
             imgui.end_group()
-        self._reset(stage, field, start + width - reset)
         self._show_error(stage, field)
 
     def _label(self, field: Field[Any], width: float) -> None:
@@ -104,7 +117,7 @@ class ParameterPanel:
         tooltip(lambda: f"{label(field.name)}\n{explain(field)}")
 
     def _reset(self, stage: Stage, field: Field[Any], x: float) -> None:
-        if stage.params.is_default(field.name) and not self._typed.wrong(field.name):
+        if field.name not in self._changed and not self._typed.wrong(field.name):
             return
         imgui.same_line(x)
         if icon_button(theme.Icon.RESET, "reset", f"Back to {field.text(field.default) or 'none'}"):

@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from viewer.engine.clock import SPEEDS
 from viewer.ui import theme
 from viewer.ui.typography import icon_button, tooltip
+from viewer.ui.widgets import begin_bar, end_bar
 
 if TYPE_CHECKING:
     from viewer.engine.stage import Stage
@@ -78,8 +79,11 @@ class Timeline:
         frame = stage.frame if self._wanted is None else self._wanted
         if frame > self._last_frame:
             self._last_frame = 2 * frame
-        imgui.set_next_item_width(max(1.0, width))
+        width = max(1.0, width)
+        imgui.set_next_item_width(width)
+        begin_bar(frame / self._last_frame, width)
         moved, wanted = imgui.slider_int("##scrub", frame, 0, self._last_frame, "%d", imgui.SliderFlags_.always_clamp)
+        end_bar()
         if moved:
             self._wanted = wanted
         if self._wanted is not None and (not imgui.is_item_active() or self._seek_seconds < SLOW_SEEK_SECONDS):

@@ -10,6 +10,7 @@ from viewer.ui import theme
 from viewer.ui.theme import Fonts
 
 TOOLTIP_EMS = 22.0
+RESTING = int(imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled)
 FLOATING = (imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
             | imgui.WindowFlags_.no_nav | imgui.WindowFlags_.no_focus_on_appearing)
 
@@ -25,7 +26,7 @@ def heading(text: str, fonts: Fonts) -> None:
 
 def tooltip(text: Callable[[], str]) -> None:
     """Explain the last item while the mouse rests on it; the text is only made then."""
-    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled):
+    if imgui.is_item_hovered(RESTING):
         imgui.push_style_var(imgui.StyleVar_.window_padding, imgui.ImVec2(10, 8))
         if imgui.begin_tooltip():
             imgui.push_text_wrap_pos(TOOLTIP_EMS * imgui.get_font_size())

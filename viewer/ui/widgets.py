@@ -17,6 +17,12 @@ MOST_SEGMENTS = 4
 LOGARITHMIC = int(imgui.SliderFlags_.logarithmic)
 ALWAYS_CLAMP = int(imgui.SliderFlags_.always_clamp)
 
+BAR_COLORS = [imgui.color_convert_float4_to_u32(imgui.ImVec4(*color))
+              for color in (theme.WELL, theme.ACCENT_DEEP, theme.ACCENT)]
+BAR_GLOW = [(int(role), imgui.ImVec4(1, 1, 1, alpha)) for role, alpha in (
+    (imgui.Col_.frame_bg, 0.0), (imgui.Col_.frame_bg_hovered, 0.06), (imgui.Col_.frame_bg_active, 0.1),
+    (imgui.Col_.slider_grab, 0.0), (imgui.Col_.slider_grab_active, 0.0))]
+
 
 def draw_value(field: Field[Any], value: Any, width: float) -> Any:
     """The widget for ``field`` at ``value``; returns a new value, or None where the hand did nothing."""
@@ -44,18 +50,18 @@ def explain(field: Field[Any]) -> str:
 def _slider(field: Slider, value: float, width: float) -> float | None:
     low, high = field.widget_range
     flags = LOGARITHMIC if field.logarithmic else 0
-    _begin_bar(share(field, value), width)
+    begin_bar(share(field, value), width)
     changed, number = imgui.slider_float("##value", value, low, high, number_format(field, "%.4g"), flags)
-    _end_bar()
+    end_bar()
     return _decimal(number) if changed else None
 
 
 def _integer(field: Integer, value: int, width: float) -> int | None:
     flags = LOGARITHMIC if field.logarithmic else 0
     low, high = int(field.minimum), int(field.maximum)
-    _begin_bar(share(field, value), width)
+    begin_bar(share(field, value), width)
     changed, number = imgui.slider_int("##value", value, low, high, number_format(field, "%d"), flags)
-    _end_bar()
+    end_bar()
     return number if changed else None
 
 
@@ -119,22 +125,20 @@ def share(field: Number[Any], value: float) -> float:
     return min(1.0, max(0.0, (value - low) / (high - low)))
 
 
-def _begin_bar(filled: float, width: float) -> None:
+def begin_bar(filled: float, width: float) -> None:
     """Draw a bar filled so far, over which ImGui's slider writes the value; its own grab would hide that."""
     low, height, round_by = imgui.get_cursor_screen_pos(), imgui.get_frame_height(), imgui.get_style().frame_rounding
     edge, thin, draw = low.x + filled * width, max(1.0, 0.12 * imgui.get_font_size()), imgui.get_window_draw_list()
-    color = [imgui.get_color_u32(imgui.ImVec4(*each)) for each in (theme.WELL, theme.ACCENT_DEEP, theme.ACCENT)]
+    color = BAR_COLORS
     draw.add_rect_filled(low, imgui.ImVec2(low.x + width, low.y + height), color[0], round_by)
     draw.add_rect_filled(low, imgui.ImVec2(edge, low.y + height), color[1], round_by)
     at = min(max(low.x, edge - thin), low.x + width - thin)
     draw.add_rect_filled(imgui.ImVec2(at, low.y), imgui.ImVec2(at + thin, low.y + height), color[2])
-    role = imgui.Col_
-    for part, alpha in ((role.frame_bg, 0.0), (role.frame_bg_hovered, 0.06), (role.frame_bg_active, 0.1),
-                        (role.slider_grab, 0.0), (role.slider_grab_active, 0.0)):
-        imgui.push_style_color(part, imgui.ImVec4(1, 1, 1, alpha))
+    for role, glow in BAR_GLOW:
+        imgui.push_style_color(role, glow)
 
 
-def _end_bar() -> None:
+def end_bar() -> None:
     imgui.pop_style_color(5)
 
 

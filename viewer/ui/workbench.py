@@ -194,6 +194,7 @@ class Workbench:
         started = time.perf_counter()
         self.session.paint(surface.target)
         self.panel_milliseconds = 1e3 * (panels + time.perf_counter() - started)
+        self.build_milliseconds = 1e3 * panels
         if self._screenshot_due:
             self._screenshot_due = False
             screenshot.save(self, screenshot.surface_pixels(surface))
