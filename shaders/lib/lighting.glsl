@@ -5,9 +5,9 @@
 
 const float PI = 3.14159265;
 const vec3 KEY_LIGHT = vec3(3.1, 2.9, 2.6);
-const vec3 FILL_LIGHT = vec3(0.16, 0.21, 0.30);
-const vec3 SKY_LIGHT = vec3(0.34, 0.38, 0.44);
-const vec3 FLOOR_LIGHT = vec3(0.13, 0.12, 0.12);
+const vec3 FILL_LIGHT = vec3(0.24, 0.30, 0.40);
+const vec3 SKY_LIGHT = vec3(0.36, 0.40, 0.47);
+const vec3 FLOOR_LIGHT = vec3(0.20, 0.19, 0.18);
 
 // Light mirrored by microscopic facets: the GGX distribution of Walter et al. 2007,
 // with the visibility term of Schlick 1994 and his Fresnel approximation.

@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 Key = imgui.Key
-CTRL, SHIFT, MODIFIERS = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_mask_)   # ImGui swaps Ctrl and Cmd on a Mac by itself
+# ImGui swaps Ctrl and Cmd on a Mac by itself.
+CTRL, SHIFT, MODIFIERS = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_mask_)
 KEY_NAMES = {
-    Key.space: "Space", Key.period: ".", Key.comma: ",", Key.equal: "+", Key.minus: "-", Key._0: "0",
+    Key.space: "Space", Key.period: "Period .", Key.comma: "Comma ,", Key.equal: "+", Key.minus: "-", Key._0: "0",
     Key.escape: "Esc", Key.home: "Home", Key.keypad_add: "+", Key.keypad_subtract: "-",
 }
 TYPED_HELP = "?"    # a different key on every keyboard, so it is taken as a letter
@@ -76,7 +77,7 @@ MOUSE = (
     ("Right, Shift+drag", "Move the camera"),
     ("Wheel, two fingers", "Come closer, go back"),
     ("Double click", "Reset the camera"),
-    (f"{'Cmd' if sys.platform == 'darwin' else 'Ctrl'} +click", "Type the value of a slider"),
+    (f"{'Cmd' if sys.platform == 'darwin' else 'Ctrl'}+click", "Type the value of a slider"),
 )
 
 

@@ -46,8 +46,9 @@ def _columns(bench: Workbench, columns: int) -> None:
             groups.setdefault(action.menu, []).append((action.keys, action.title))
     order = ["Play", "Edit", "Picture", "Help", "View", "Mouse"]
     if imgui.begin_table("columns", columns, imgui.TableFlags_.sizing_fixed_fit | imgui.TableFlags_.no_host_extend_x):
+        width = COLUMN_EMS * imgui.get_font_size()
         for index in range(columns):
-            imgui.table_setup_column(str(index), imgui.TableColumnFlags_.width_fixed, COLUMN_EMS * imgui.get_font_size())
+            imgui.table_setup_column(str(index), imgui.TableColumnFlags_.width_fixed, width)
         imgui.table_next_column()
         for name in order:
             if columns == 2 and name == "View":
@@ -64,5 +65,6 @@ def _line(keys: str, title: str) -> None:
     imgui.push_style_color(imgui.Col_.text, theme.ACCENT)
     imgui.text_unformatted(keys)
     imgui.pop_style_color()
-    imgui.same_line(start + KEY_EMS * imgui.get_font_size())
+    imgui.same_line()
+    imgui.set_cursor_pos_x(start + KEY_EMS * imgui.get_font_size())
     imgui.text_unformatted(title)

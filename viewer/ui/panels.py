@@ -85,9 +85,16 @@ class Panels:
         if not self.bench.stage:
             return
         if layout.one_column:
-            self._draw_tabs({"Tune": self._draw_controls} | self._right_tabs("Measure"))
+            imgui.push_style_var(imgui.StyleVar_.frame_padding, imgui.ImVec2(*(0.25 * imgui.get_font_size(),) * 2))
+            self._draw_tabs({"Tune": self._draw_all_controls} | self._right_tabs("Data"))
+            imgui.pop_style_var()
         else:
             self._draw_controls()
+
+    def _draw_all_controls(self) -> None:
+        """Presets and parameters scroll together where there is little height."""
+        guarded("presets", self.presets.draw)
+        guarded("parameters", self.parameters.draw)
 
     def _draw_controls(self) -> None:
         guarded("presets", self.presets.draw)

@@ -89,8 +89,10 @@ class ParameterPanel:
         own_line = isinstance(field, FormulaField)
         start = imgui.get_cursor_pos_x()
         beside = width if own_line else LABEL_SHARE * width
-        self._label(field, beside - reset - 0.2 * imgui.get_font_size())
-        self._reset(stage, field, start + beside - reset)
+        resettable = field.name in self._changed or self._typed.wrong(field.name)
+        self._label(field, beside - (reset if resettable else 0.0) - 0.3 * imgui.get_font_size())
+        if resettable:
+            self._reset(stage, field, start + beside - reset)
         if own_line:
             self._typed.draw(field, value, width)
             tooltip(lambda: explain(field))
@@ -117,8 +119,6 @@ class ParameterPanel:
         tooltip(lambda: f"{label(field.name)}\n{explain(field)}")
 
     def _reset(self, stage: Stage, field: Field[Any], x: float) -> None:
-        if field.name not in self._changed and not self._typed.wrong(field.name):
-            return
         imgui.same_line(x)
         if icon_button(theme.Icon.RESET, "reset", f"Back to {field.text(field.default) or 'none'}"):
             self._typed.discard(field.name)

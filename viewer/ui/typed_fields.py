@@ -18,7 +18,7 @@ from viewer.ui.typography import icon_button
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
-FORMULA_LINES = 2.2
+FORMULA_LINES = (2, 5)     # as many as the text takes, within these
 
 
 @dataclass
@@ -75,7 +75,7 @@ class TypedFields:
         imgui.push_font(self.bench.session.fonts.code, 0.0)
         if draft.error:
             imgui.push_style_color(imgui.Col_.frame_bg, theme.WARNING_DEEP)
-        height = FORMULA_LINES * imgui.get_text_line_height() + 2 * imgui.get_style().frame_padding.y
+        height = _lines(draft.text, width) * imgui.get_text_line_height() + 3 * imgui.get_style().frame_padding.y
         changed, text = imgui.input_text_multiline("##value", draft.text, imgui.ImVec2(width, height),
                                                    imgui.InputTextFlags_.word_wrap)
         if draft.error:
@@ -123,6 +123,13 @@ class TypedFields:
 def dialogs_exist() -> bool:
     """Whether the system can show its own file dialog; on Linux that takes zenity or kdialog."""
     return not sys.platform.startswith("linux") or any(map(shutil.which, ("zenity", "kdialog", "qarma", "matedialog")))
+
+
+def _lines(text: str, width: float) -> float:
+    """How many lines a formula takes, about, in an input of ``width``."""
+    columns = max(1, int((width - 2 * imgui.get_font_size()) / max(1.0, imgui.calc_text_size("m").x)))
+    needed = sum(1 + len(line) // columns for line in text.split("\n"))
+    return min(FORMULA_LINES[1], max(FORMULA_LINES[0], needed))
 
 
 def _show_error(draft: Draft, bench: Workbench) -> None:
