@@ -6,13 +6,14 @@ python := .venv/bin/python
 extras-test := [test]
 extras-bench := [test,bench]
 
-.PHONY: help run test bench clean libraries
+.PHONY: help run test bench pictures clean libraries
 
 help:
 	@echo "make run     open Demoscope; with no display, write one picture of every scene and say where"
-	@echo "             make run ARGS='fish' opens one scene, make run ARGS='list' lists them"
+	@echo "             make run ARGS=rippling_sphere opens one scene, make run ARGS='list' lists them"
 	@echo "make test    check style and types, then run the tests; ARGS go to pytest"
 	@echo "make bench   measure speed, beside other viewers"
+	@echo "make pictures   draw the README's pictures again"
 	@echo "make clean   remove .venv and whatever was built; pictures in captures/ stay"
 	@echo "PYTHON=...   the Python to use, 3.11 or newer (default: the first one found)"
 
@@ -30,6 +31,9 @@ test: libraries .venv/.ready-test
 
 bench: libraries .venv/.ready-bench
 	@$(python) -m pytest tests/benchmarks --override-ini=norecursedirs= --capture=no $(ARGS)
+
+pictures: libraries .venv/.ready-run
+	@.ci/pictures $(python) assets/pictures
 
 clean:
 	rm -rf .venv build dist tests/failures .mypy_cache .pytest_cache .ruff_cache

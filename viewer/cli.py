@@ -89,8 +89,11 @@ def run_capture(options: argparse.Namespace) -> int:
             return 0
         from viewer.ui.headless import panels
 
-        drawn = panels(stage, Catalog(options.pack))
-        print(capture_timed(stage, frames, options.out, drawn))
+        window = panels(stage, Catalog(options.pack))
+        try:
+            print(capture_timed(stage, frames, options.out, window.pixels))
+        finally:
+            window.release()
     return 0
 
 

@@ -86,7 +86,7 @@ def number_text(value: float) -> str:
         return str(number)
     if number == round(number) and abs(number) < 1e12:
         return f"{round(number):,}".replace(",", "\u2009") if abs(number) >= 10_000 else f"{round(number)}"
-    return f"{number:.4g}"
+    return f"{number:.4g}".replace("e-0", "e-").replace("e+0", "e+")
 
 
 def _plot(name: str, curve: Curve) -> Plot:

@@ -85,9 +85,7 @@ class Panels:
         if not self.bench.stage:
             return
         if layout.one_column:
-            imgui.push_style_var(imgui.StyleVar_.frame_padding, imgui.ImVec2(*(0.25 * imgui.get_font_size(),) * 2))
             self._draw_tabs({"Tune": self._draw_all_controls} | self._right_tabs("Data"))
-            imgui.pop_style_var()
         else:
             self._draw_controls()
 
@@ -112,8 +110,13 @@ class Panels:
     def _draw_tabs(self, tabs: dict[str, Callable[[], None]]) -> None:
         if not imgui.begin_tab_bar("tabs", imgui.TabBarFlags_.fitting_policy_scroll):
             return
+        em = imgui.get_font_size()
+        padding = imgui.ImVec2((0.3 if self.bench.layout.one_column else 0.5) * em, 0.25 * em)
         for title, draw in tabs.items():
-            if imgui.begin_tab_item(title)[0]:
+            imgui.push_style_var(imgui.StyleVar_.frame_padding, padding)
+            chosen = imgui.begin_tab_item(title)[0]
+            imgui.pop_style_var()
+            if chosen:
                 imgui.begin_child(title)
                 guarded(title.lower(), draw)
                 imgui.end_child()
