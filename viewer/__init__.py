@@ -1,27 +1,34 @@
-"""Demoscope: computer graphics, live. What a scene author or a script imports."""
+"""Demoscope: computer graphics, live. What a scene author or a script imports.
+
+The names are fetched when first asked for, so that ``viewer.kit`` needs no OpenGL.
+"""
 
 from __future__ import annotations
 
-from viewer.engine.camera import Orbit
-from viewer.engine.fields import ParameterError
-from viewer.engine.formula_shader import formula_include
-from viewer.engine.gpu import Gpu
-from viewer.engine.params import (
-    Parameters,
-    choice,
-    color,
-    file,
-    formula,
-    integer,
-    interval,
-    slider,
-    text,
-    toggle,
-)
-from viewer.engine.scene import Curve, Geometry, Measurements, Scene, Studio
-from viewer.engine.stage import Stage
-from viewer.errors import DemoscopeError
-from viewer.output.headless import headless, render
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from viewer.engine.camera import Orbit
+    from viewer.engine.fields import ParameterError
+    from viewer.engine.formula_shader import formula_include
+    from viewer.engine.gpu import Gpu
+    from viewer.engine.params import (
+        Parameters,
+        choice,
+        color,
+        file,
+        formula,
+        integer,
+        interval,
+        slider,
+        text,
+        toggle,
+    )
+    from viewer.engine.scene import Curve, Geometry, Measurements, Scene, Studio
+    from viewer.engine.stage import Stage
+    from viewer.errors import DemoscopeError
+    from viewer.output.headless import headless, render
 
 __version__ = "0.1.0"
 
@@ -50,3 +57,18 @@ __all__ = [
     "text",
     "toggle",
 ]
+
+# Where they live, the first that has a name being its home.
+_HOMES = ("errors", "engine.fields", "engine.params", "engine.camera", "engine.gpu", "engine.formula_shader",
+          "engine.scene", "engine.stage", "output.headless")
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    for home in _HOMES:
+        module = import_module(f"{__name__}.{home}")
+        if name in vars(module):
+            globals()[name] = vars(module)[name]
+            return globals()[name]
+    raise AttributeError(f"module {__name__!r} has lost {name!r}")

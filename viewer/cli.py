@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,10 +16,13 @@ from viewer.engine.catalog import Catalog, summary
 from viewer.engine.context import has_display
 from viewer.engine.fields import nearest
 from viewer.engine.scene import SceneError
+from viewer.engine.shaders import ShaderError
 from viewer.engine.stage import DEFAULT_SIZE
 from viewer.errors import DemoscopeError
 
 MISTAKE = 2
+INTERRUPTED = 130    # as shells count: 128 and the signal's number
+READER_GONE = 141
 PICTURE_FOLDER = Path("captures")
 WINDOW_SIZE = (1280, 800)
 
@@ -37,12 +41,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(_with_command(words))
     run: Callable[[argparse.Namespace], int] = options.run
     try:
-        return run(options)
+        status = run(options)
+        sys.stdout.flush()
+        return status
     except DemoscopeError as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return MISTAKE
+        return _complain(error)
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
+    except BrokenPipeError:
+        _say_no_more()
+        return READER_GONE
+    except OSError as error:
+        _say_no_more()
+        return _complain(f"cannot print: {error.strerror or error}")
 
 
 # The commands
@@ -134,6 +145,7 @@ def _pictures_of_all(catalog: Catalog, options: argparse.Namespace) -> int:
     from viewer.output.capture import capture
     from viewer.output.headless import headless
 
+    status = 0
     chosen = [catalog.find(options.scene)] if options.scene else catalog.entries()
     print("No display: drawing one picture of every scene instead." if not options.scene
           else "No display: drawing a picture instead.")
@@ -142,11 +154,9 @@ def _pictures_of_all(catalog: Catalog, options: argparse.Namespace) -> int:
             with headless(entry.name, size=options.size, samples=options.samples, params=options.set,
                           preset=options.preset, seed=options.seed, camera=options.camera, packs=options.pack) as stage:
                 print(*capture(stage, [0], PICTURE_FOLDER.absolute()), sep="\n")
-        except SceneError as error:
-            if options.scene:
-                raise
-            print(f"error: {error}", file=sys.stderr)
-    return 0
+        except (SceneError, ShaderError) as error:
+            status = _complain(error)
+    return status
 
 
 def _stage(options: argparse.Namespace) -> Any:
@@ -155,6 +165,16 @@ def _stage(options: argparse.Namespace) -> Any:
     return headless(options.scene, size=getattr(options, "size", (64, 64)), samples=getattr(options, "samples", 0),
                     params=options.set, preset=options.preset, seed=options.seed,
                     camera=getattr(options, "camera", None), packs=options.pack)
+
+
+def _complain(error: object) -> int:
+    print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+    return MISTAKE
+
+
+def _say_no_more() -> None:
+    """Send what stdout still holds nowhere, lest Python tries to print it once more at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 # The options

@@ -17,14 +17,14 @@ const int CENTRAL = 5;            // differences of neighbours at p - epsilon, p
 
 // How far the vertex moves. Where the formula has no value there is no ripple.
 float ripple_height(vec3 p) {
-    float height = displacement(p, u_frame.time);
+    float height = displacement(p);
     return abs(height) <= 100.0 ? height : 0.0;
 }
 
 // How steeply that changes in x, y and z, by the formula's own derivatives.
 vec3 ripple_slope(vec3 p) {
-    vec3 slope = displacement_gradient(p, u_frame.time);
-    bool has_value = abs(displacement(p, u_frame.time)) <= 100.0 && dot(slope, slope) < 1e12;
+    vec3 slope = displacement_gradient(p);
+    bool has_value = abs(displacement(p)) <= 100.0 && dot(slope, slope) < 1e12;
     return has_value ? slope : vec3(0.0);
 }
 

@@ -50,9 +50,9 @@ class OrbitCamera:
         self.yaw = (self.yaw - right * DEGREES_PER_HEIGHT) % 360.0
         self.pitch = float(np.clip(self.pitch + down * DEGREES_PER_HEIGHT, -STEEPEST_PITCH, STEEPEST_PITCH))
 
-    def pan(self, right: float, down: float) -> None:
-        """Move the target so that it follows a drag given in heights of the picture."""
-        height = 2.0 * self.distance * math.tan(math.radians(self.field_of_view) / 2.0)
+    def pan(self, right: float, down: float, aspect: float = 1.0) -> None:
+        """Move the target so that it follows a drag given in heights of a picture of that ``aspect``."""
+        height = 2.0 * self.distance * self._half_height(aspect)
         across, up = self.view()[:3, 0], self.view()[:3, 1]
         self.target = self.target + height * (down * up - right * across)
 
@@ -77,6 +77,9 @@ class OrbitCamera:
 
         A picture narrower than a square keeps its horizontal field of view, so nothing is cut off.
         """
-        half_height = math.tan(math.radians(self.field_of_view) / 2.0) / min(1.0, aspect)
-        field_of_view = math.degrees(2.0 * math.atan(half_height))
+        field_of_view = math.degrees(2.0 * math.atan(self._half_height(aspect)))
         return perspective(field_of_view, aspect, self.distance / 50.0, self.distance * 50.0)
+
+    def _half_height(self, aspect: float) -> float:
+        """Half of what the picture shows from bottom to top at distance 1."""
+        return math.tan(math.radians(self.field_of_view) / 2.0) / min(1.0, aspect)

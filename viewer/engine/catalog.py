@@ -49,8 +49,8 @@ class SceneEntry:
         module.__file__ = str(self.file)
         sys.modules[name] = module
         try:
-            exec(compile(self.file.read_text(encoding="utf-8"), str(self.file), "exec"), module.__dict__)
-        except Exception as error:
+            exec(compile(self.file.read_bytes(), str(self.file), "exec"), module.__dict__)
+        except (Exception, SystemExit) as error:
             raise scene_error(self, "cannot be loaded", error) from error
         return module
 
@@ -87,11 +87,9 @@ class Catalog:
 
     def find(self, name: str) -> SceneEntry:
         """The scene called ``name``; raises SceneError with the nearest name if there is none."""
-        for pack in self.packs:
-            file = pack / "scenes" / f"{name}.py"
-            if name.isidentifier() and file.is_file():
-                return self._entry(file, pack)
-        entries = {entry.name: entry for entry in self.entries()}
+        entries = self._scenes_in(self.packs)
+        if name not in entries:
+            entries = {entry.name: entry for entry in self.entries()}
         if name not in entries:
             raise SceneError(f"unknown scene {name}{nearest(name, tuple(entries))}; "
                              f"known: {', '.join(entries) or 'none'}")
@@ -99,12 +97,16 @@ class Catalog:
 
     def entries(self) -> list[SceneEntry]:
         """Every scene, by name; of two with one name the earlier pack's."""
+        found = self._scenes_in([*self.packs, *_installed_packs()])
+        return [found[name] for name in sorted(found)]
+
+    def _scenes_in(self, packs: Iterable[Path]) -> dict[str, SceneEntry]:
         found: dict[str, SceneEntry] = {}
-        for pack in [*self.packs, *_installed_packs()]:
+        for pack in packs:
             for file in sorted((pack / "scenes").glob("*.py")):
                 if not file.name.startswith("_"):
                     found.setdefault(file.stem, self._entry(file, pack))
-        return [found[name] for name in sorted(found)]
+        return found
 
     def _entry(self, file: Path, pack: Path) -> SceneEntry:
         folders: Sequence[Path] = dict.fromkeys([pack, *self.packs, builtin_pack()])  # type: ignore[assignment]
@@ -112,9 +114,12 @@ class Catalog:
 
 
 def _checked(pack: Path) -> Path:
-    if not (pack / "scenes").is_dir():
-        raise SceneError(f"pack {pack} has no folder scenes")
-    return pack.resolve()
+    try:
+        if (pack / "scenes").is_dir():
+            return pack.resolve()
+    except (OSError, ValueError) as error:
+        raise SceneError(f"pack {pack} cannot be read: {error}") from error
+    raise SceneError(f"pack {pack} has no folder scenes")
 
 
 def _installed_packs() -> list[Path]:
@@ -122,7 +127,10 @@ def _installed_packs() -> list[Path]:
 
     packs = []
     for point in entry_points(group=ENTRY_POINTS):
-        module = importlib.util.find_spec(point.value.split(":")[0])
+        try:
+            module = importlib.util.find_spec(point.value.split(":")[0])
+        except ImportError:     # what is left of a package that has gone
+            continue
         if module and module.origin:
             packs.append(Path(module.origin).parent)
     return [pack for pack in packs if (pack / "scenes").is_dir()]

@@ -110,6 +110,11 @@ class Number(Field[T]):
     def limits(self) -> dict[str, Any]:
         return {"minimum": self.minimum, "maximum": self.maximum, "logarithmic": self.logarithmic}
 
+    def spelled(self, number: float) -> str:
+        """``number`` as short as single precision allows, unless that rounds it out of the range."""
+        short = f"{number:.9g}"
+        return short if self.minimum <= float(short) <= self.maximum else repr(float(number))
+
     def number(self, value: object, whole: object) -> float:
         """``value`` as a finite float inside the range; ``whole`` is what the message quotes."""
         try:
@@ -134,7 +139,7 @@ class Slider(Number[float]):
         return self.number(value, value)
 
     def text(self, value: float) -> str:
-        return f"{value:.9g}"
+        return self.spelled(value)
 
     def uniform(self, value: float) -> Uniform:
         return value
@@ -191,7 +196,7 @@ class Interval(Number[tuple[float, float]]):
         return low, high
 
     def text(self, value: tuple[float, float]) -> str:
-        return f"{value[0]:.9g}..{value[1]:.9g}"
+        return f"{self.spelled(value[0])}..{self.spelled(value[1])}"
 
     def stored(self, value: tuple[float, float]) -> list[float]:
         return list(value)
@@ -255,7 +260,7 @@ class Color(Field[tuple[float, float, float]]):
     def parse(self, value: object) -> tuple[float, float, float]:
         try:
             channels = self._channels(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise self.refuse(value, self.ALLOWED) from None
         if len(channels) != 3 or not all(0.0 <= channel <= 1.0 for channel in channels):
             raise self.refuse(value, self.ALLOWED)
@@ -346,16 +351,18 @@ class File(Field[Path | None]):
         super().__init__(default, help, rebuild=rebuild)
 
     def parse(self, value: object) -> Path | None:
-        if value is None or value == "":
+        if value is None:
             return None
         if not isinstance(value, (str, Path)):
             raise self.refuse(value, "is not a file's path")
-        path = Path(value).expanduser()
-        if self.suffixes and path.suffix.lower() not in self.suffixes:
+        if value == "":
+            return None
+        if self.suffixes and Path(value).suffix.lower() not in self.suffixes:
             raise self.refuse(value, f"does not end in {', '.join(self.suffixes)}")
         try:
+            path = Path(value).expanduser()
             found = path.is_file()
-        except (OSError, ValueError):
+        except (OSError, ValueError, RuntimeError):     # too long, a NUL, a user without a home
             found = False
         if not found:
             raise self.refuse(value, "is not a file that exists")

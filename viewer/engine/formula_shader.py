@@ -5,26 +5,26 @@ from __future__ import annotations
 from viewer.engine.params import Parameters, formula_uniform
 from viewer.kit.formula import Formula, glsl_vector
 
+AXES = ("x", "y", "z")
+
 
 def formula_include(params: Parameters, name: str) -> str:
-    """GLSL for the formula parameter ``name``: ``float NAME(vec3 p, float t)`` and ``vec3 NAME_gradient``.
+    """GLSL for the formula parameter ``name``: ``float NAME(vec3 p)`` and ``vec3 NAME_gradient(vec3 p)``.
 
-    The parameters that the formula mentions become uniforms that every program gets.
+    The numbers that the formula mentions become uniforms that every program gets. The time is read
+    from ``lib/frame.glsl``, which has to be included first, and only where the formula has a ``t``.
     """
     formula: Formula = params.get(name)
-    place = ("x", "y", "z", "t")
-    numbers = [variable for variable in formula.variables if variable not in place]
-    arguments = [*place, *numbers]
+    sources = {"x": "p.x", "y": "p.y", "z": "p.z", "t": "u_frame.time"}
+    numbers = [variable for variable in formula.variables if variable not in sources]
+    sources |= {number: formula_uniform(name, number) for number in numbers}
+    arguments = [*AXES, *(variable for variable in formula.variables if variable not in AXES)]
     gradient = formula.gradient()
-    functions = [
+    passed = ", ".join(sources[argument] for argument in arguments)
+    return "\n".join([
         formula.glsl(f"{name}_formula", arguments),
-        glsl_vector(f"{name}_formula_gradient", [gradient["x"], gradient["y"], gradient["z"]], arguments),
-    ]
-    uniforms = [f"uniform float {formula_uniform(name, number)};" for number in numbers]
-    passed = ", ".join(["p.x", "p.y", "p.z", "t", *(formula_uniform(name, number) for number in numbers)])
-    wrappers = [
-        f"float {name}(vec3 p, float t) {{ return {name}_formula({passed}); }}",
-        f"vec3 {name}_gradient(vec3 p, float t) {{ return {name}_formula_gradient({passed}); }}",
-    ]
-    return "\n".join([*functions, *uniforms, *wrappers, ""])
-
+        glsl_vector(f"{name}_formula_gradient", [gradient[axis] for axis in AXES], arguments),
+        *(f"uniform float {sources[number]};" for number in numbers),
+        f"float {name}(vec3 p) {{ return {name}_formula({passed}); }}",
+        f"vec3 {name}_gradient(vec3 p) {{ return {name}_formula_gradient({passed}); }}",
+        ""])

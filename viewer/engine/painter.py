@@ -83,8 +83,9 @@ class Painter:
         self._block.release()
 
     def _cast_shadow(self, scene: Scene, frame: int, draw: Callable[[], None]) -> None:
-        moment = frame if scene.reads_time or scene.gpu.reads_time else None
-        shows = (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation, moment)
+        moves = scene.simulates or scene.reads_time or scene.gpu.reads_time
+        shows = (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
+                 frame if moves else None)
         if shows == self._shadow_shows:
             return
         self._shadow_shows = None

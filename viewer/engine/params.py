@@ -107,7 +107,8 @@ class Parameters:
                 raise ParameterError(f"unknown parameter {name}{nearest(name, tuple(fields))}")
             if not isinstance(fields[name], FormulaField):
                 after[name] = fields[name].parse(value)
-        changed = frozenset(name for name in values if _differs(fields[name], self._values.get(name), after[name]))
+        changed = frozenset(name for name in values if name not in self._values
+                            or _differs(fields[name], self._values[name], after[name]))
         if changed:
             self._values, self._born = after, born
             self.revision += 1
@@ -115,8 +116,15 @@ class Parameters:
 
     def reset(self, name: str | None = None) -> frozenset[str]:
         """Back to the default, for one parameter or for all; returns the names that changed."""
-        names = [name] if name is not None else list(self.fields)
-        return self.update({each: self.field(each).default for each in names if each in self.fields})
+        return self.update(self.completed({}) if name is None else {name: self.field(name).default})
+
+    def completed(self, values: Mapping[str, object]) -> dict[str, object]:
+        """``values``, and the default of each parameter that they leave out, their formulas' own sliders too."""
+        complete = {name: values.get(name, field.default) for name, field in self.declared.items()}
+        formulas = {name: field.parse(complete[name]) for name, field in self.declared.items()
+                    if isinstance(field, FormulaField)}
+        born = _fields_from_formulas(self.declared, formulas)
+        return {**complete, **{name: field.default for name, field in born.items()}, **values}
 
     def is_default(self, name: str) -> bool:
         """Whether a parameter still has its declared value."""
@@ -148,7 +156,7 @@ def formula_uniform(formula: str, name: str) -> str:
 
 
 def _differs(field: Field[Any], before: Any, after: Any) -> bool:
-    return before is None or field.stored(before) != field.stored(after)
+    return bool(field.stored(before) != field.stored(after))
 
 
 def _fields_from_formulas(declared: Mapping[str, Field[Any]], values: Mapping[str, Any]) -> dict[str, Field[Any]]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viewer.engine.camera import Orbit
+from viewer.engine.camera import STEEPEST_PITCH, Orbit
 from viewer.engine.fields import nearest
 from viewer.errors import DemoscopeError
 from viewer.whole_file import whole_file
@@ -73,10 +73,10 @@ def load_preset(entry: SceneEntry, name: str | Path) -> Preset:
     path = Path(name)
     if path.suffix == ".toml" or len(path.parts) > 1:
         return read_preset(path)
-    for folder in reversed(_folders(entry)):
-        if (folder / f"{name}.toml").is_file():
-            return read_preset(folder / f"{name}.toml")
-    names = tuple(preset.name for preset in presets_for(entry))
+    files = {file.stem: file for folder in _folders(entry) for file in sorted(folder.glob("*.toml"))}
+    if str(name) in files:
+        return read_preset(files[str(name)])
+    names = tuple(files)
     known = ", ".join(names) or "none"
     raise PresetError(f"{entry.name} has no preset {name}{nearest(str(name), names)}; known: {known}")
 
@@ -126,6 +126,12 @@ def _camera(data: Mapping[str, Any], path: Path) -> dict[str, float]:
     for key, value in camera.items():
         if key not in CAMERA_KEYS:
             raise PresetError(f"preset {path}: camera has {key}, which is none of {', '.join(CAMERA_KEYS)}")
-        if not isinstance(value, (int, float)) or not abs(value) < 1e6 or (key == "distance" and value <= 0):
+        if not isinstance(value, (int, float)) or not _is_sensible(key, value):
             raise PresetError(f"preset {path}: camera {key} = {value} is not a sensible number")
     return camera
+
+
+def _is_sensible(key: str, value: float) -> bool:
+    if key == "pitch":
+        return abs(value) <= STEEPEST_PITCH
+    return abs(value) < 1e6 and (key != "distance" or value > 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import moderngl
@@ -66,7 +67,9 @@ class Program:
         self._own_uniforms: dict[str, Uniform] = {}
         self._variants: dict[object, Variant] = {}
         self._sources = self._flatten()
-        self._stamp = self._now()
+        self._files: set[Path] = set()
+        self._stamp: Stamp = ()
+        self._watch(self._sources)
         self.reads_time = _mention_time(self._sources.values())
         if fragment:
             self._variants["colour"] = self._link("colour", self._sources)
@@ -85,16 +88,14 @@ class Program:
         found.apply(self._own_uniforms, self.name)
         return found
 
-
     def refresh(self) -> ShaderError | None:
         """Link anew if a file or generated text changed; returns the error that stands, if any."""
-        stamp = self._now()
-        if stamp == self._stamp:
+        if self._now() == self._stamp:
             return self.error
-        self._stamp = stamp
+        self._stamp = ()        # a file that is missing may yet appear: look again next time
         try:
             sources = self._flatten()
-            self._stamp = self._now(sources)
+            self._watch(sources)
             if not self._same_text(sources):
                 self._replace(sources)
             self.error = None
@@ -129,11 +130,14 @@ class Program:
     def _same_text(self, sources: dict[str, Source]) -> bool:
         return all(sources[stage].lines == self._sources[stage].lines for stage in sources)
 
-    def _now(self, sources: dict[str, Source] | None = None) -> Stamp:
+    def _watch(self, sources: dict[str, Source]) -> None:
+        self._files = {path for source in sources.values() for path in source.files}
+        self._stamp = self._now()
+
+    def _now(self) -> Stamp:
         """What tells whether anything changed: each file's time and size, each generated text's hash."""
-        files = {path for source in (sources or self._sources).values() for path in source.files}
         stamp = [(name, hash(make()), 0) for name, make in self._generated.items()]
-        for path in sorted(files):
+        for path in sorted(self._files):
             try:
                 status = path.stat()
                 stamp.append((str(path), status.st_mtime_ns, status.st_size))
@@ -158,7 +162,8 @@ class Program:
 
 def _mention_time(sources: Iterable[Source]) -> bool:
     """Whether shaders mention the time."""
-    return any(name in line for source in sources for line in source.lines for name in ("u_frame.time", "u_frame.number"))
+    names = ("u_frame.time", "u_frame.number")
+    return any(name in line for source in sources for line in source.lines for name in names)
 
 
 class VertexArray:

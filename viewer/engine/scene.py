@@ -103,6 +103,11 @@ class Scene:
         """Scene time in seconds."""
         return self.frame * FRAME_SECONDS
 
+    @property
+    def simulates(self) -> bool:
+        """Whether it has an ``update``, so that each frame follows from the one before."""
+        return type(self).update is not Scene.update
+
     def stand_at(self, frame: int) -> None:
         """Tell the scene which frame it is; the stage does."""
         self._frame = frame

@@ -95,7 +95,7 @@ class ShaderFolders:
             raise ShaderError(place, line, f"no shader file {name} in {' or '.join(map(str, self.folders))}")
         source.files.add(path)
         try:
-            return path.read_text(encoding="utf-8")
+            return path.read_text(encoding="utf-8-sig")
         except (OSError, UnicodeDecodeError) as error:
             raise ShaderError(name, 0, f"cannot be read: {error}") from error
 
@@ -108,6 +108,7 @@ MESSAGE_FORMS = (
 )
 SEVERITY = re.compile(r"^(?:(?:preprocessor )?error|fatal error)\s*(?:[A-Z]?\d+)?:\s*")
 WARNING = re.compile(r"\bwarning\b", re.IGNORECASE)
+HEADING = re.compile(r"\w+_shader$|program$|\w+ info$|.*\bfailed\.?$", re.IGNORECASE)
 
 
 def explain(message: str, sources: Mapping[str, Source], place: str) -> ShaderError:
@@ -116,14 +117,16 @@ def explain(message: str, sources: Mapping[str, Source], place: str) -> ShaderEr
     ``sources`` holds the flattened text of each stage by moderngl's name for it (``vertex_shader``);
     ``place`` stands for the program where the message names no line, as link errors do.
     """
-    stage = next((name for name in sources if name in message), next(iter(sources)))
+    stage = next(iter(sources))
     lines = [line.strip() for line in message.splitlines()]
     for line in lines:
         match = next(filter(None, (form.match(line) for form in MESSAGE_FORMS)), None)
+        if not match:       # perhaps a heading: vertex_shader, or Fragment info as NVIDIA's linker writes
+            stage = next((name for name in sources if line.lower().startswith(name.split("_")[0])), stage)
         if match and not WARNING.match(match["text"]):
             return _located(sources[stage], int(match["line"]), SEVERITY.sub("", match["text"]))
-    plain = [line for line in lines if line and not set(line) <= set("=-") and "failed" not in line
-             and line not in sources and line != "Program"]
+    plain = [line for line in lines if line and not set(line) <= set("=-") and not HEADING.match(line)
+             and not WARNING.search(line)]
     return ShaderError(place, 0, SEVERITY.sub("", plain[0]) if plain else "the driver refused it without a reason")
 
 

@@ -15,6 +15,7 @@ from viewer.engine.matrices import Matrix
 DEPTH_SIZE = 512
 NEAR_SIZE = 256
 WIDE_SIZE = 128
+GL_DEPTH_CLAMP = 0x864F     # what stands before the light's near plane casts its shadow all the same
 
 
 class ShadowMap:
@@ -44,7 +45,11 @@ class ShadowMap:
         self._casting.use()
         self._casting.clear(depth=1.0)
         self.gpu.context.enable_only(moderngl.DEPTH_TEST)
-        draw()
+        self.gpu.context.enable_direct(GL_DEPTH_CLAMP)
+        try:
+            draw()
+        finally:
+            self.gpu.context.disable_direct(GL_DEPTH_CLAMP)
         self._blur_all()
 
     def bind(self) -> None:

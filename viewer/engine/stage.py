@@ -80,9 +80,8 @@ class Stage:
 
     def apply_preset(self, preset: Preset) -> None:
         """Take over a preset: its values, the defaults for what it leaves out, and its camera if it has one."""
-        defaults = {name: field.default for name, field in self.params.declared.items()}
         try:
-            self.update_params({**defaults, **preset.values})
+            self.update_params(self.params.completed(preset.values))
         except ParameterError as error:
             raise ParameterError(f"preset {preset.name}: {error}") from error
         pose = preset.pose(self.scene_class.camera)
@@ -101,13 +100,10 @@ class Stage:
         """Go to ``frame``: exactly where playing from 0 gets, forwards or backwards."""
         if frame < 0:
             raise ParameterError(f"frame = {frame} is before the first, which is 0")
-        if self._simulates:
-            if frame < self.clock.frame:
-                self._exchange(self.scene_class, self.params)
-                self._go_to(0)
-            while self.clock.frame < frame:
-                self._simulate_one()
-        self._go_to(frame)
+        if self.scene.simulates and frame < self.clock.frame:
+            self._exchange(self.scene_class, self.params, frame)
+        else:
+            self._play_to(frame)
 
     def step(self, frames: int = 1) -> None:
         """Go on by ``frames``, or back where negative."""
@@ -145,8 +141,7 @@ class Stage:
 
     def rebuild(self) -> None:
         """Build the scene anew with the present parameters, at the frame where it stands."""
-        self._exchange(self.scene_class, self.params)
-        self._catch_up()
+        self._exchange(self.scene_class, self.params, self.clock.frame)
 
     def reload_scene(self) -> None:
         """Read the scene's file again and build it, with the present values as far as they still apply."""
@@ -157,11 +152,10 @@ class Stage:
                 params.update({name: value})
             except ParameterError:
                 continue
-        self._exchange(scene_class, params)
+        self._exchange(scene_class, params, self.clock.frame)
         self.scene_class, self.params = scene_class, params
         self.camera.start = scene_class.camera
         self.painter.furnish(scene_class.studio)
-        self._catch_up()
 
     def refresh_shaders(self) -> ShaderError | None:
         """Take over edited shader files; returns the error that stands, if any."""
@@ -173,10 +167,6 @@ class Stage:
         self.painter.release()
 
     # Inside
-
-    @property
-    def _simulates(self) -> bool:
-        return type(self.scene).update is not Scene.update
 
     def _change(self, change: Callable[[], frozenset[str]]) -> frozenset[str]:
         """Make a change to the parameters felt, or, if the scene or a shader cannot follow, undo it."""
@@ -210,7 +200,7 @@ class Stage:
         """A new scene in an arena of its own; the arena is freed again if the scene fails to build."""
         arena = Gpu(self.context, self.entry.shaders)
         arena.share(params)
-        self.painter.set_moment(self.camera, self.clock.frame)
+        self.painter.set_moment(self.camera, 0)
         self.picture.use()
         try:
             return self._guard("failed to build", lambda: scene_class.create(arena, params))
@@ -218,17 +208,24 @@ class Stage:
             arena.release()
             raise
 
-    def _exchange(self, scene_class: type[Scene], params: Parameters) -> None:
-        former = self.scene
+    def _exchange(self, scene_class: type[Scene], params: Parameters, frame: int) -> None:
+        """Let a new scene, played to ``frame``, take the place of the present one, or if it fails none."""
+        former, stood_at = self.scene, self.clock.frame
         self.scene = self._built(scene_class, params)
+        try:
+            self._go_to(0)
+            self._play_to(frame)
+        except BaseException:
+            self.scene.gpu.release()
+            self.scene = former
+            self._go_to(stood_at)
+            raise
         former.gpu.release()
 
-    def _catch_up(self) -> None:
-        """Bring a scene that was just built to the clock's frame."""
-        frame = self.clock.frame
-        if self._simulates:
-            self._go_to(0)
-        self.seek(frame)
+    def _play_to(self, frame: int) -> None:
+        while self.scene.simulates and self.clock.frame < frame:
+            self._simulate_one()
+        self._go_to(frame)
 
     def _go_to(self, frame: int) -> None:
         self.clock.frame = frame
@@ -247,4 +244,4 @@ class Stage:
         return self._guard(doing, work)
 
     def _share_parameters(self) -> None:
-        self.scene.gpu.share(self.params)
+        self.scene.gpu.share(self.scene.params)

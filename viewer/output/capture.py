@@ -32,7 +32,7 @@ def parse_frames(text: str) -> list[int]:
             chosen: Sequence[int] = ends if len(ends) == 1 else range(*ends)
             if len(ends) > 3 or not chosen or min(chosen[0], chosen[-1]) < 0 or len(chosen) > MOST_FRAMES:
                 raise ValueError
-        except ValueError:
+        except (ValueError, OverflowError):
             raise ParameterError(f"frames = {text[:60]} is not a list such as 0,30,60 or a range such as "
                                  f"0:120 or 0:120:4") from None
         frames.update(chosen)

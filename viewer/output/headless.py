@@ -40,14 +40,15 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
     entry = Catalog(packs).find(scene)
     chosen = load_preset(entry, preset) if preset else None
     values = {**(chosen.values if chosen else {}), **(params or {})}
-    stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
-    try:
-        pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
-        if pose:
-            stage.camera.pose(pose)
-        yield stage
-    finally:
-        stage.release()
+    with shared_context() as context:       # the thread may have another one in use
+        stage = Stage(context, entry, size=size, samples=samples, params=values, seed=seed)
+        try:
+            pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
+            if pose:
+                stage.camera.pose(pose)
+            yield stage
+        finally:
+            stage.release()
 
 
 def render(scene: str, frame: int = 0, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,

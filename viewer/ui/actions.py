@@ -29,7 +29,7 @@ class Action:
     menu: str
     title: str
     chords: tuple[int, ...]
-    run: Callable[[Workbench], None]
+    run: Callable[[Workbench], object]
     repeats: bool = False
     while_typing: bool = False
     checked: Callable[[Workbench], bool] | None = None
@@ -49,7 +49,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("Edit", "Redo", (CTRL | SHIFT | Key.z, CTRL | Key.y), lambda bench: bench.redo(), repeats=True),
     Action("Edit", "Reset all parameters", (), lambda bench: bench.reset()),
     Action("View", "Reset the camera", (Key.r,), lambda bench: bench.reset_camera()),
-    Action("View", "Hide or show all panels", (Key.h,), lambda bench: bench.toggle("panels"),
+    Action("View", "All panels", (Key.h,), lambda bench: bench.toggle("panels"),
            checked=lambda bench: bench.view.panels),
     Action("View", "Scenes and parameters", (Key.f2,), lambda bench: bench.toggle("left"), while_typing=True,
            checked=lambda bench: bench.view.left),

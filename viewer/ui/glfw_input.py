@@ -31,7 +31,7 @@ NUMBERED = (
     | {f"F{number}": getattr(Key, f"f{number}") for number in range(1, 13)}
     | {chr(code).upper(): getattr(Key, chr(code)) for code in range(ord("a"), ord("z") + 1)})
 KEYS: dict[int, imgui.Key] = {getattr(glfw, f"KEY_{name}"): key for name, key in {**NAMED, **NUMBERED}.items()}
-BY_LETTER = {chr(code): getattr(Key, chr(code)) for code in range(ord("a"), ord("z") + 1)} | {
+BY_LETTER: dict[str, imgui.Key] = {chr(code): getattr(Key, chr(code)) for code in range(ord("a"), ord("z") + 1)} | {
     ",": Key.comma, ".": Key.period, "-": Key.minus, "+": Key.equal, "=": Key.equal}
 MODIFIERS = (
     (Key.mod_ctrl, (glfw.KEY_LEFT_CONTROL, glfw.KEY_RIGHT_CONTROL)),
@@ -39,7 +39,7 @@ MODIFIERS = (
     (Key.mod_alt, (glfw.KEY_LEFT_ALT, glfw.KEY_RIGHT_ALT)),
     (Key.mod_super, (glfw.KEY_LEFT_SUPER, glfw.KEY_RIGHT_SUPER)),
 )
-CURSORS = {
+CURSORS: dict[int, int] = {
     imgui.MouseCursor_.arrow: glfw.ARROW_CURSOR, imgui.MouseCursor_.text_input: glfw.IBEAM_CURSOR,
     imgui.MouseCursor_.resize_ns: glfw.VRESIZE_CURSOR, imgui.MouseCursor_.resize_ew: glfw.HRESIZE_CURSOR,
     imgui.MouseCursor_.hand: glfw.HAND_CURSOR,
@@ -109,5 +109,5 @@ def _translated(key: int, scancode: int) -> imgui.Key | None:
 
 
 def _clipboard(handle: Any) -> str:
-    text = glfw.get_clipboard_string(handle)
-    return text.decode("utf-8", "replace") if text else ""
+    text: Any = glfw.get_clipboard_string(handle)    # declared as text, in fact bytes
+    return text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""

@@ -13,6 +13,8 @@ from viewer.ui.typography import FLOATING, heading
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
+TITLE = "Keys and mouse"
+ROOM_FOR_ALL = 30.0
 KEY_EMS = 8.5
 COLUMN_EMS = 22.0
 TWO_COLUMNS_FROM = 48.0
@@ -22,21 +24,23 @@ def draw(bench: Workbench) -> None:
     """The overlay, where it is open; a click beside it closes it."""
     if not bench.view.help:
         return
+    if not imgui.is_popup_open(TITLE):
+        imgui.open_popup(TITLE)
     view, em = imgui.get_main_viewport(), imgui.get_font_size()
     columns = 2 if view.size.x > TWO_COLUMNS_FROM * em else 1
     imgui.set_next_window_pos(view.get_center(), imgui.Cond_.always, imgui.ImVec2(0.5, 0.5))
     most = imgui.ImVec2(max(1.0, view.size.x - em), max(1.0, view.size.y - em))
     imgui.set_next_window_size_constraints(imgui.ImVec2(0, 0), most)
     imgui.push_style_var(imgui.StyleVar_.window_padding, imgui.ImVec2(1.4 * em, 1.1 * em))
-    imgui.begin("Keys and mouse", None, (FLOATING & ~imgui.WindowFlags_.no_scrollbar)
-                | imgui.WindowFlags_.always_auto_resize)
-    imgui.set_window_focus()
-    _columns(bench, columns)
-    inside = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
-    imgui.end()
+    roomy = view.size.y > ROOM_FOR_ALL * em
+    flags = FLOATING if roomy else FLOATING & ~imgui.WindowFlags_.no_scrollbar
+    if imgui.begin_popup_modal(TITLE, None, flags | imgui.WindowFlags_.always_auto_resize)[0]:
+        _columns(bench, columns)
+        inside = imgui.is_window_hovered(imgui.HoveredFlags_.root_and_child_windows)
+        if imgui.is_mouse_clicked(0) and not inside:
+            bench.view.help = False
+        imgui.end_popup()
     imgui.pop_style_var()
-    if imgui.is_mouse_clicked(0) and not inside:
-        bench.view.help = False
 
 
 def _columns(bench: Workbench, columns: int) -> None:

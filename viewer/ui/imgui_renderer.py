@@ -1,7 +1,7 @@
 """Draws what ImGui prepared, with moderngl and GLSL 3.30, by the texture protocol of Dear ImGui 1.92.
 
-ImGui asks for textures to be made, updated and destroyed as glyphs come and go; ``render`` obeys before
-it draws. Pictures of our own are shown by telling the renderer their texture with ``lend``.
+ImGui asks for textures to be made, updated and destroyed as glyphs come and go; ``prepare`` obeys.
+Pictures of our own are shown by telling the renderer their texture with ``lend``.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 VERTEX_BYTES = 20   # position 2f, texture coordinate 2f, colour 4 bytes
 INDEX_BYTES = 4
+FRAMES_IN_FLIGHT = 3
+BLENDING = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
 
 VERTEX_SHADER = """
 #version 330 core
@@ -48,6 +50,22 @@ void main() {
 """
 
 
+class Room:
+    """Buffers for one frame's triangles. There are a few, used in turn, so that none is still being read."""
+
+    def __init__(self, context: moderngl.Context, program: moderngl.Program, vertex_bytes: int,
+                 index_bytes: int) -> None:
+        self.vertices = context.buffer(reserve=vertex_bytes, dynamic=True)
+        self.indices = context.buffer(reserve=index_bytes, dynamic=True)
+        content = [(self.vertices, "2f 2f 4f1", "in_position", "in_texcoord", "in_color")]
+        self.array = context.vertex_array(program, content, self.indices, index_element_size=INDEX_BYTES)
+
+    def release(self) -> None:
+        """Free the buffers."""
+        for thing in (self.array, self.vertices, self.indices):
+            thing.release()
+
+
 class ImguiRenderer:
     """Belongs to the ImGui context that is current when it is made; ``release`` while that still lives."""
 
@@ -61,27 +79,32 @@ class ImguiRenderer:
         self._program["u_texture"] = 0
         self._textures: dict[int, moderngl.Texture] = {}
         self._lent: dict[int, moderngl.Texture] = {}
-        self._make_room(1 << 18, 1 << 16)
+        self._rooms = [Room(context, self._program, 1 << 17, 1 << 16) for _ in range(FRAMES_IN_FLIGHT)]
+        self._room = self._rooms[0]
 
     def lend(self, texture: moderngl.Texture) -> imgui.ImTextureRef:
-        """What to hand to ``imgui.image`` to show ``texture``; good until the end of the next ``render``."""
+        """What to hand to ``imgui.image`` to show ``texture``; good until the end of the next ``draw``."""
         self._lent[texture.glo] = texture
         return imgui.ImTextureRef(texture.glo)
 
-    def render(self, data: ImDrawData, target: moderngl.Framebuffer) -> None:
-        """Draw ``data`` over ``target``, which covers the whole of ImGui's display."""
+    def prepare(self, data: ImDrawData) -> None:
+        """Bring textures up to date and send the triangles to the GPU."""
         for texture in data.textures:
             if texture.status != imgui.ImTextureStatus.ok:
                 self._update(texture)
+        if data.total_idx_count:
+            self._upload(data)
+
+    def draw(self, data: ImDrawData, target: moderngl.Framebuffer) -> None:
+        """Draw ``data``, prepared before, over ``target``, which covers the whole of ImGui's display."""
         width = round(data.display_size.x * data.framebuffer_scale.x)
         height = round(data.display_size.y * data.framebuffer_scale.y)
         if width > 0 and height > 0 and data.total_idx_count:
-            self._upload(data)
             self._begin(data, target, (width, height))
             try:
                 self._draw_lists(data, target, height)
             finally:
-                target.scissor = None
+                target.scissor = None  # type: ignore[assignment]
                 self.context.disable(moderngl.BLEND)
         self._lent.clear()
 
@@ -94,7 +117,8 @@ class ImguiRenderer:
         for left in self._textures.values():
             left.release()
         self._textures.clear()
-        self._free_room()
+        for room in self._rooms:
+            room.release()
         self._program.release()
 
     def _begin(self, data: ImDrawData, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
@@ -102,8 +126,8 @@ class ImguiRenderer:
         target.viewport = (0, 0, *size)
         context = self.context
         context.enable_only(moderngl.BLEND)
-        context.blend_equation = moderngl.FUNC_ADD
-        context.blend_func = *moderngl.DEFAULT_BLENDING, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
+        context.blend_func = BLENDING  # type: ignore[assignment]
         scale = 2.0 / data.display_size.x, -2.0 / data.display_size.y
         self._program["u_scale"] = scale
         self._program["u_offset"] = -1.0 - data.display_pos.x * scale[0], 1.0 - data.display_pos.y * scale[1]
@@ -120,7 +144,7 @@ class ImguiRenderer:
                     self._bind(name)
                     bound = name
                 target.scissor = box
-                self._array.render(moderngl.TRIANGLES, vertices=command.elem_count,
+                self._room.array.render(moderngl.TRIANGLES, vertices=command.elem_count,
                                    first=first_index + command.idx_offset)
             first_index += commands.idx_buffer.size()
 
@@ -140,23 +164,14 @@ class ImguiRenderer:
             indices.append(np.frombuffer(raw, np.uint32) + np.uint32(base))
             base += vertex_count
         vertex_bytes, index_array = b"".join(vertices), np.concatenate(indices)
-        if len(vertex_bytes) > self._vertices.size or index_array.nbytes > self._indices.size:
-            self._free_room()
-            self._make_room(2 * len(vertex_bytes), 2 * index_array.nbytes)
-        self._vertices.orphan()
-        self._vertices.write(vertex_bytes)
-        self._indices.orphan()
-        self._indices.write(index_array)
-
-    def _make_room(self, vertex_bytes: int, index_bytes: int) -> None:
-        self._vertices = self.context.buffer(reserve=vertex_bytes, dynamic=True)
-        self._indices = self.context.buffer(reserve=index_bytes, dynamic=True)
-        content = [(self._vertices, "2f 2f 4f1", "in_position", "in_texcoord", "in_color")]
-        self._array = self.context.vertex_array(self._program, content, self._indices, index_element_size=INDEX_BYTES)
-
-    def _free_room(self) -> None:
-        for thing in (self._array, self._vertices, self._indices):
-            thing.release()
+        room = self._rooms.pop(0)
+        if len(vertex_bytes) > room.vertices.size or index_array.nbytes > room.indices.size:
+            room.release()
+            room = Room(self.context, self._program, 2 * len(vertex_bytes), 2 * index_array.nbytes)
+        self._rooms.append(room)
+        self._room = room
+        room.vertices.write(vertex_bytes)
+        room.indices.write(index_array)
 
     def _update(self, texture: ImTextureData) -> None:
         if texture.status == imgui.ImTextureStatus.want_create:

@@ -54,7 +54,7 @@ class ImguiSession:
         implot.set_current_context(self._implot)
 
     def frame(self, surface: Surface, seconds: float, scale: float, draw: Callable[[], None]) -> None:
-        """Run ``draw`` between ImGui's beginning and end of a frame; ``paint`` shows the result."""
+        """Run ``draw`` as one frame of ImGui's and send the result to the GPU; ``paint`` shows it."""
         io = self.io
         if self._dressed != (scale, surface.dpi):
             theme.apply(scale, surface.dpi)
@@ -68,10 +68,12 @@ class ImguiSession:
         finally:
             imgui.render()
 
+        self.renderer.prepare(imgui.get_draw_data())
+
     def paint(self, target: moderngl.Framebuffer) -> None:
         """Draw the last frame's panels over ``target``."""
         self.make_current()
-        self.renderer.render(imgui.get_draw_data(), target)
+        self.renderer.draw(imgui.get_draw_data(), target)
 
     def release(self) -> None:
         """Free everything on the GPU and both contexts."""

@@ -14,6 +14,7 @@ from viewer.engine.stage import Stage
 from viewer.ui.guard import one_line
 
 WATCH_SECONDS = 0.2
+REDRAW_WATCHES = 10
 PLACE_IN_SCENE = re.compile(r"(?P<file>[\w.-]+\.py):(?P<line>\d+)")
 
 
@@ -57,6 +58,7 @@ class LiveStage:
         self._scene_stamp = _stamp(stage.entry.file)
         self._shader_error: ShaderError | None = None
         self._since_watch = 0.0
+        self._watches = 0
         self._drawn: object = None
         self._query = stage.context.query(time=True)
         self._query_pending = False
@@ -99,7 +101,9 @@ class LiveStage:
         if stamp != self._scene_stamp:
             self._scene_stamp = stamp
             self.reload()
-        self._drawn = None
+        self._watches = (self._watches + 1) % REDRAW_WATCHES
+        if not self._watches:    # the set's own shaders may have changed, which ``_state`` does not see
+            self._drawn = None
 
     def reload(self) -> None:
         """Build the scene from its file anew."""
@@ -144,8 +148,8 @@ class LiveStage:
 
     def _state(self) -> tuple[object, ...]:
         stage, camera = self.stage, self.stage.camera
-        return (id(stage.scene), stage.frame, stage.params.revision, stage.size, camera.yaw, camera.pitch,
-                camera.distance, camera.field_of_view, *camera.target)
+        return (id(stage.scene), stage.scene.gpu.generation, stage.frame, stage.params.revision, stage.size,
+                camera.yaw, camera.pitch, camera.distance, camera.field_of_view, *camera.target)
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from viewer.ui import help_overlay, menu, message
+from viewer.ui import help_overlay, menu, message, splitter
 from viewer.ui.code_panel import CodePanel
 from viewer.ui.guard import guarded
 from viewer.ui.layout import Box
@@ -18,12 +18,11 @@ from viewer.ui.performance_panel import PerformancePanel
 from viewer.ui.preset_panel import PresetPanel
 from viewer.ui.scene_list import SceneList
 from viewer.ui.timeline import Timeline
+from viewer.ui.typography import FIXED
 
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
-FIXED = (imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
-         | imgui.WindowFlags_.no_bring_to_front_on_focus | imgui.WindowFlags_.no_nav)
 ROOM_FOR_SCENE_LIST = 30.0   # ems of height under which the scenes become a drop-down list
 ROOM_FOR_PERFORMANCE = 50.0
 
@@ -66,6 +65,7 @@ class Panels:
             self._window("left", layout.left, self._draw_left)
             self._window("right", layout.right, self._draw_right)
             self._window("bottom", layout.bottom, self._draw_bottom)
+            splitter.draw(bench)
         guarded("messages", lambda: message.draw(bench))
         guarded("help", lambda: help_overlay.draw(bench))
 

@@ -38,7 +38,9 @@ class PerformancePanel:
         em = imgui.get_font_size()
         height = imgui.get_frame_height() if one_row else imgui.get_content_region_avail().y
         width = 8.0 * em
+        imgui.push_style_color(imgui.Col_.plot_lines, theme.ACCENT_DEEP)
         imgui.plot_lines("##frames", self._milliseconds, self._next, self._rate, 0.0, 50.0, imgui.ImVec2(width, height))
+        imgui.pop_style_color()
         tooltip(lambda: f"Time of the last {FRAMES_SHOWN} frames, 0 to 50 ms, and frames per second")
         imgui.same_line(0.0, 0.8 * em)
         imgui.begin_group()

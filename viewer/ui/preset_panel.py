@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
@@ -61,7 +62,7 @@ class PresetPanel:
                 self.bench.apply_preset(preset)
                 self._title = preset.title
             if preset.description:
-                tooltip(lambda preset=preset: preset.description)
+                tooltip(partial(str, preset.description))
 
     def _dialog(self) -> None:
         if not imgui.begin_popup(POPUP):

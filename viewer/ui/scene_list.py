@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,10 +40,10 @@ class SceneList:
         for entry in self.bench.entries:
             selected = entry.name == present
             if imgui.selectable(f"{title(entry.name)}##{entry.name}", selected)[0] and not selected:
-                self.bench.open(entry.name)
+                self.bench.choose(entry.name)
             if selected:
                 _mark_item()
-            tooltip(lambda entry=entry: sentence(entry.file))
+            tooltip(partial(sentence, entry.file))
         if not self.bench.entries:
             imgui.text_disabled("No scenes in any pack")
 

@@ -10,7 +10,7 @@ from typing import Any
 from imgui_bundle import imgui  # noqa: F401  before glfw, for which it sets the library's path
 
 import glfw  # isort: skip
-from moderngl_window.context.glfw import Window as GlfwWindow  # isort: skip
+from moderngl_window.context.glfw.window import Window as GlfwWindow  # isort: skip
 
 from viewer.engine.camera import Orbit
 from viewer.engine.catalog import Catalog
@@ -52,9 +52,9 @@ def _opened(size: tuple[int, int]) -> GlfwWindow:
         window = GlfwWindow(title=TITLE, gl_version=(3, 3), size=size, resizable=True, vsync=True, samples=0)
     except Exception as error:
         raise plain_words("; ".join([*complaints, str(error)])) from error
-    glfw.set_error_callback(None)
+    glfw.set_error_callback(lambda code, text: None)
     window.exit_key = window.fullscreen_key = None
-    window.ctx.gc_mode = None
+    window.ctx.gc_mode = None  # type: ignore[assignment]
     return window
 
 
@@ -72,7 +72,7 @@ def _begin(bench: Workbench, scene_name: str | None, params: Mapping[str, object
         return
     pose = camera or (chosen.pose(bench.stage.camera.start) if chosen else None)
     if pose:
-        bench.stage.pose(pose)
+        bench.stage.camera.pose(pose)
 
 
 class _Loop:
@@ -106,7 +106,7 @@ class _Loop:
     def toggle_fullscreen(self) -> None:
         """Fill the screen that the window is mostly on (a projector's, say), or go back."""
         if self._windowed:
-            glfw.set_window_monitor(self.handle, None, *self._windowed, 0)
+            glfw.set_window_monitor(self.handle, None, *self._windowed, 0)  # type: ignore[arg-type]
             self._windowed = None
         else:
             position, size = glfw.get_window_pos(self.handle), glfw.get_window_size(self.handle)

@@ -1,0 +1,83 @@
+"""The parts of the panels that need no picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from viewer.engine.scene import Curve
+from viewer.ui.history import History
+from viewer.ui.layout import View, arrange
+from viewer.ui.measurer import number_text, prepared, readout
+from viewer.ui.typed_fields import excerpt
+
+
+def test_history_melts_what_is_changed_without_letting_go() -> None:
+    history = History()
+    history.record("size", {"size": 1}, {"size": 2})
+    history.record("size", {"size": 2}, {"size": 3})
+    history.settle()
+    history.record("size", {"size": 3}, {"size": 4})
+    assert history.undo() == {"size": 3}
+    assert history.undo() == {"size": 1}
+    assert history.undo() is None
+    assert history.redo() == {"size": 3}
+    history.record("count", {"size": 3}, {"size": 9})
+    assert history.redo() is None
+
+
+def test_history_forgets_a_drag_that_came_back() -> None:
+    history = History()
+    history.record("size", {"size": 1}, {"size": 2})
+    history.record("size", {"size": 2}, {"size": 1})
+    assert not history.can_undo
+
+
+@pytest.mark.parametrize(("name", "value", "expected"), [
+    ("normal_error_mean_deg", 6.45123, ("normal error mean", "6.451°")),
+    ("step_ms", 1.5, ("step", "1.5 ms")),
+    ("triangles", 20480, ("triangles", "20\u2009480")),
+    ("vertices", 42, ("vertices", "42")),
+    ("epsilon", 1.5e-7, ("epsilon", "1.5e-7")),
+])
+def test_readouts(name: str, value: float, expected: tuple[str, str]) -> None:
+    assert readout(name, value) == expected
+
+
+def test_numbers_that_are_none() -> None:
+    assert number_text(float("nan")) == "nan"
+
+
+def test_curves_leave_out_what_a_logarithm_cannot_show() -> None:
+    curve = Curve("x", [0.0, 1.0, 2.0, 3.0], {"y_mean": [1.0, -1.0, float("nan"), 5.0]}, log_x=True, log_y=True)
+    (name, x, y), = prepared({"curve": curve}).plots[0].series
+    assert (name, list(x), list(y)) == ("y mean", [3.0], [5.0])
+
+
+def test_long_curves_are_thinned() -> None:
+    curve = Curve("x", np.arange(100_000), {"y": np.arange(100_000)})
+    assert len(prepared({"curve": curve}).plots[0].series[0][1]) <= 1010
+
+
+def test_excerpt_points_at_the_character() -> None:
+    shown, marker = excerpt("a + $ * b", 5, 40)
+    assert shown[marker.index("^")] == "$"
+    long = "+".join(["amplitude"] * 20) + "+$+x"
+    shown, marker = excerpt(long, long.index("$") + 1, 30)
+    assert shown[marker.index("^")] == "$"
+    assert len(shown) <= 31
+
+
+@pytest.mark.parametrize("size", [(1, 1), (300, 200), (1024, 768), (3840, 2160)])
+@pytest.mark.parametrize("scale", [1.0, 2.0, 3.0])
+def test_layout_covers_the_window(size: tuple[int, int], scale: float) -> None:
+    layout = arrange(size, 16 * scale, 22 * scale, View())
+    assert layout.left.width + layout.picture.width + layout.right.width == pytest.approx(size[0])
+    assert layout.menu_height + layout.picture.height + layout.bottom.height == pytest.approx(size[1])
+
+
+def test_the_picture_has_the_larger_part() -> None:
+    layout = arrange((1024, 768), 16, 22, View())
+    assert layout.picture.width > 450
+    assert layout.picture.height > 600
+    assert not layout.one_column
