@@ -4,7 +4,7 @@ ARGS ?=
 PYTHON ?=
 python := .venv/bin/python
 extras-test := [test]
-extras-bench := [test,bench]
+extras-bench := [bench]
 
 .PHONY: help run test bench pictures clean libraries
 
@@ -12,7 +12,7 @@ help:
 	@echo "make run     open Demoscope; with no display, write one picture of every scene and say where"
 	@echo "             make run ARGS=rippling_sphere opens one scene, make run ARGS='list' lists them"
 	@echo "make test    check style and types, then run the tests; ARGS go to pytest"
-	@echo "make bench   measure speed, beside other viewers"
+	@echo "make bench   measure speed, beside other viewers; ARGS='panels --rounds 3' for a part of it"
 	@echo "make pictures   draw the README's pictures again"
 	@echo "make clean   remove .venv and whatever was built; pictures in captures/ stay"
 	@echo "PYTHON=...   the Python to use, 3.11 or newer (default: the first one found)"
@@ -30,7 +30,7 @@ test: libraries .venv/.ready-test
 	exit $$status
 
 bench: libraries .venv/.ready-bench
-	@$(python) -m pytest tests/benchmarks --override-ini=norecursedirs= --capture=no $(ARGS)
+	@$(python) -m tests.benchmarks $(ARGS)
 
 pictures: libraries .venv/.ready-run
 	@.ci/pictures $(python) assets/pictures

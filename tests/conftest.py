@@ -49,16 +49,15 @@ def only_context() -> moderngl.Context:
 @pytest.fixture
 def context(only_context: moderngl.Context) -> Iterator[moderngl.Context]:
     """A current GL context. After the test nothing made in it may be left, nor an error be pending."""
-    with only_context:
-        assert only_context.error == "GL_NO_ERROR"
-        yield only_context
-        assert only_context.error == "GL_NO_ERROR"
-        gc.collect()
-        left = [thing for thing in only_context.objects if hasattr(thing, "release")]   # what was freed has none
-        only_context.objects.clear()
-        for thing in left:
-            thing.release()
-        assert not left, f"never freed: {[type(thing).__name__ for thing in left]}"
+    assert shared_context().error == "GL_NO_ERROR"
+    yield only_context
+    assert shared_context().error == "GL_NO_ERROR"
+    gc.collect()
+    left = [thing for thing in only_context.objects if hasattr(thing, "release")]   # what was freed has none
+    only_context.objects.clear()
+    for thing in left:
+        thing.release()
+    assert not left, f"never freed: {[type(thing).__name__ for thing in left]}"
 
 
 @pytest.fixture

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import atexit
+import gc
 import json
 import math
 import os
@@ -37,6 +39,7 @@ class Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status."""
+    atexit.register(gc.freeze)      # whatever is left goes with the process; no need to look through it for cycles
     words = list(sys.argv[1:] if arguments is None else arguments)
     options = _parser().parse_args(_with_command(words))
     run: Callable[[argparse.Namespace], int] = options.run

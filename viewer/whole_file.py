@@ -34,6 +34,8 @@ def whole_file(path: Path) -> Iterator[Path]:
             Path(name).replace(path)
         finally:
             Path(name).unlink(missing_ok=True)
+    except FileExistsError as error:
+        raise OutputError(f"cannot write {path}: {path.parent} is not a folder") from error
     except OSError as error:
         raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
 

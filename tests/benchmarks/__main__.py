@@ -39,10 +39,10 @@ def main() -> int:
 
 def machine() -> str:
     """Where the figures come from."""
-    load = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
-    return (f"Python {platform.python_version()}, {os.cpu_count()} cores{load}, {big_mesh.renderer()}. Each contender "
-            f"takes its turn in every round; the middle of all figures, the best, and\nhow many times as long as "
-            f"Demoscope a contender takes.")
+    load = f"load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "load unknown"
+    return (f"On {os.cpu_count()} cores, {load}, with {big_mesh.renderer()} and Python {platform.python_version()}. "
+            f"All take turns in every round. Median and best of\nall figures; 'of ours': the median, divided by that "
+            f"of the nearest row of Demoscope's above it.")
 
 
 def _attempt(name: str, rounds: int) -> list[Section]:

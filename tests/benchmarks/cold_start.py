@@ -50,7 +50,9 @@ def window_modules(folder: Path) -> list[str]:
     words = ["capture", "rippling_sphere", "--out", str(folder)]
     done = subprocess.run([sys.executable, "-c", script, *words], cwd=ROOT, capture_output=True, text=True)
     loaded = done.stderr.split()
-    return sorted({name for name in WINDOW_LIBRARIES if name in loaded})
+    if "viewer.cli" not in loaded:
+        return ["(the capture did not run)"]
+    return [name for name in WINDOW_LIBRARIES if name in loaded]
 
 
 def _row(name: str, runs: list[Run] | str) -> Row:

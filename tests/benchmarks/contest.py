@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -32,11 +33,11 @@ class DidNotRunError(Exception):
     """A contender that failed; the message is its last word."""
 
 
-def run_whole(command: Sequence[str]) -> Run:
+def run_whole(command: Sequence[str], environment: Mapping[str, str]) -> Run:
     """Start ``command``, wait for its end and say what it took; raises DidNotRunError."""
     with tempfile.TemporaryFile("w+") as complaints:
         start = time.perf_counter()
-        process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=complaints)
+        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=complaints)
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -48,17 +49,20 @@ def run_whole(command: Sequence[str]) -> Run:
 def whole_processes(commands: Mapping[str, Sequence[str]], rounds: int) -> dict[str, list[Run] | str]:
     """Each command once to fill caches, then ``rounds`` times in turn: its runs, or why there are none."""
     outcome: dict[str, list[Run] | str] = {name: [] for name in commands}
-    for turn in range(rounds + 1):
-        for name, command in commands.items():
-            runs = outcome[name]
-            if isinstance(runs, str):
-                continue
-            try:
-                run = run_whole(command)
-            except (DidNotRunError, OSError) as error:
-                outcome[name] = str(error)
-            else:
-                runs += [run] if turn else []
+    with tempfile.TemporaryDirectory() as bytecode:
+        environment = {**os.environ, "PYTHONPYCACHEPREFIX": bytecode}   # compiled once, as after any first start
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        for turn in range(rounds + 1):
+            for name, command in commands.items():
+                runs = outcome[name]
+                if isinstance(runs, str):
+                    continue
+                try:
+                    run = run_whole(command, environment)
+                except (DidNotRunError, OSError) as error:
+                    outcome[name] = str(error)
+                else:
+                    runs += [run] if turn else []
     return outcome
 
 
@@ -91,7 +95,8 @@ class Worker:
     def close(self) -> None:
         """Let the process end."""
         assert self._process.stdin and self._process.stdout
-        self._process.stdin.close()
+        with suppress(BrokenPipeError):
+            self._process.stdin.close()
         try:
             self._process.wait(10)
         except subprocess.TimeoutExpired:
@@ -114,7 +119,7 @@ def frames_in_turn(workers: Sequence[Worker], rounds: int, frames: int) -> None:
             worker.close()
 
 
-def serve(frame: Callable[[int], object]) -> None:
+def serve(frame: Callable[[int], object], answers: IO[str]) -> None:
     """The worker's side: for each number read, time that many calls of ``frame`` and answer with the seconds."""
     number = 0
     for line in sys.stdin:
@@ -138,4 +143,4 @@ if __name__ == "__main__":
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     drawing = importlib.import_module(f"tests.benchmarks.peers.{sys.argv[1]}")
-    serve(drawing.frames(*sys.argv[2:]))
+    serve(drawing.frames(*sys.argv[2:]), answers)

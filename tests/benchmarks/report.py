@@ -37,7 +37,7 @@ class Row:
 
 @dataclass
 class Section:
-    """A subject's rows. Times are compared with the first row of ours that stands above them."""
+    """A subject's rows. Times are compared with the nearest row of ours above them."""
 
     title: str
     rows: list[Row] = field(default_factory=list)
@@ -57,11 +57,10 @@ def faster_than(row: Row, peer: Row, name: str, *, as_good: bool = False) -> str
 
 
 def duration(seconds: float) -> str:
-    """Three digits and a unit that suits."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3)):
-        if seconds >= 0.2 * size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 1e-6:.3g} µs"
+    """Seconds or milliseconds, whichever suits."""
+    if seconds >= 1.0:
+        return f"{seconds:.2f} s"
+    return f"{1e3 * seconds:.2f} ms" if seconds < 0.01 else f"{1e3 * seconds:.0f} ms"
 
 
 def table(sections: Iterable[Section]) -> str:

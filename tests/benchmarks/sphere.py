@@ -41,3 +41,9 @@ def eye(frame: int, distance: float) -> tuple[float, float, float]:
     """Where the camera is at a frame of a turn around the sphere."""
     yaw = 0.02 * frame
     return distance * float(np.sin(yaw)), 0.28 * distance, distance * float(np.cos(yaw))
+
+
+def swollen(vertices: NDArray[np.float64], frame: int) -> NDArray[np.float64]:
+    """The vertices at a frame of the motion that the pack's shader makes."""
+    moved: NDArray[np.float64] = (1.0 + 0.05 * np.sin(frame / 60.0)) * vertices
+    return moved

@@ -10,7 +10,7 @@ from viewer.engine.clock import FRAME_SECONDS, MOST_STEPS_AT_ONCE, SPEEDS, Clock
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-@pytest.mark.parametrize("rate", [24, 60, 61.7, 144])
+@pytest.mark.parametrize("rate", [50, 60, 61.7, 144])
 def test_frames_keep_pace_with_the_wall(speed: float, rate: float) -> None:
     """In ten seconds of unsteady pictures, sixty steps a second times the speed, none lost to rounding."""
     chance = random.Random(1)
@@ -21,7 +21,7 @@ def test_frames_keep_pace_with_the_wall(speed: float, rate: float) -> None:
         seconds = chance.uniform(0.5, 1.5) / rate
         passed += seconds
         steps += clock.steps_due(seconds)
-    assert abs(steps - passed * 60 * speed) <= 1 + (MOST_STEPS_AT_ONCE if rate * 8 < 60 * speed * 1.5 else 0)
+    assert abs(steps - passed * 60 * speed) <= 1
 
 
 def test_a_stall_is_not_caught_up() -> None:

@@ -53,7 +53,7 @@ def reader() -> str:
     """The shader that gives out every number of the block in order."""
     cases, start = [], 0
     for kind, name in FIELDS:
-        index = "n - {0}".format(start)
+        index = f"n - {start}"
         part = {"mat4": f"[({index}) / 4][({index}) % 4]", "float": ""}.get(kind, f"[{index}]")
         cases.append(f"    if (n >= {start} && n < {start + FLOATS[kind]}) v_number = u_frame.{name}{part};")
         start += FLOATS[kind]

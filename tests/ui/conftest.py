@@ -166,37 +166,42 @@ def make_hand(context: moderngl.Context, pack: Path, monkeypatch: pytest.MonkeyP
         hand = Hand(bench, Surface(target, size))
         made.append(hand)
         _note_places(hand, monkeypatch)
-        bench.open(scene)
+        if bench.open(scene):
+            bench.stage.clock.playing = False
         hand.frames(3)
         return hand
 
     yield make
     for hand in made:
         hand.bench.release()
-        for buffer in hand.surface.target.color_attachments:
-            buffer.release()
-        hand.surface.target.release()
+        free(hand.surface.target)
     assert left_over(context) == []
     assert context.error == "GL_NO_ERROR"
+
+
+def free(target: moderngl.Framebuffer) -> None:
+    """Release a framebuffer and what it draws into; it may not stay bound then."""
+    target.ctx.detect_framebuffer(0).use()
+    for buffer in target.color_attachments:
+        buffer.release()
+    target.release()
 
 
 def left_over(context: moderngl.Context) -> list[str]:
     """Kinds of the GL objects that Python has forgotten but nobody released, since the last call."""
     gc.collect()
-    left = [type(thing).__name__ for thing in context._objects if not isinstance(thing, moderngl.mgl.InvalidObject)]
-    for thing in list(context._objects):
-        if not isinstance(thing, moderngl.mgl.InvalidObject):
-            thing.release()
+    left = [thing for thing in context._objects if not isinstance(thing, moderngl.mgl.InvalidObject)]
+    names = [type(thing).__name__ for thing in left]
+    for thing in left:
+        thing.release()
     context._objects.clear()
-    return left
+    return names
 
 
 @pytest.fixture
 def hand(make_hand: Callable[..., Hand]) -> Hand:
     """A bench of 1024x768 that shows the tile, paused."""
-    made = make_hand()
-    made.bench.stage.clock.playing = False
-    return made
+    return make_hand()
 
 
 def _note_places(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 from imgui_bundle import imgui
 
-from tests.ui.conftest import left_over
+from tests.ui.conftest import free, left_over
 from viewer.ui.imgui_session import ImguiSession, Surface
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 def draw_text(session: ImguiSession, surface: Surface, text: str, size: float = 20.0) -> bytes:
     def draw() -> None:
         imgui.set_next_window_pos(imgui.ImVec2(0, 0))
+        imgui.set_next_window_size(imgui.ImVec2(320, 200))
         imgui.begin("text", None, imgui.WindowFlags_.no_decoration)
         imgui.push_font(session.fonts.regular, size)
         imgui.text_unformatted(text)
@@ -47,8 +48,7 @@ def test_textures_come_grow_and_go(context: moderngl.Context) -> None:
     session.release()
     assert all(isinstance(texture.mglo, moderngl.mgl.InvalidObject) for texture in made)
     assert not session.renderer._textures
-    target.color_attachments[0].release()
-    target.release()
+    free(target)
     del session, surface, target
     assert left_over(context) == []
     assert context.error == "GL_NO_ERROR"
@@ -74,9 +74,12 @@ def test_two_sessions_do_not_disturb_each_other(make_hand: Callable[..., Hand]) 
 
 def test_a_retina_screen_gets_twice_the_pixels(make_hand: Callable[..., Hand], context: moderngl.Context) -> None:
     hand = make_hand()
+    usual_surface = hand.surface
     target = context.framebuffer([context.renderbuffer((2048, 1536), 4)])
     hand.surface = Surface(target, (1024, 768), (2.0, 2.0), 1.0)
     usual = hand.bench.stage.size
     hand.frames(3)
     assert hand.bench.stage.size == (2 * usual[0], 2 * usual[1])
     assert hand.pixels().shape == (1536, 2048, 4)
+    free(target)
+    hand.surface = usual_surface

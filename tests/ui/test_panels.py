@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -48,7 +49,7 @@ def test_a_typed_value_beyond_the_range_is_refused_in_words(hand: Hand) -> None:
     hand.type("7")
     hand.key(Key.enter)
     assert hand.value("size") == 0.5
-    assert "7 is outside 0 to 1" in hand.bench.panels.parameters._errors["size"][0]
+    assert "is outside 0 to 1" in hand.bench.panels.parameters._errors["size"][0]
     hand.frames(3)
     hand.drag("size", (30.0, 0.0))
     assert not hand.bench.panels.parameters._errors
@@ -188,6 +189,21 @@ def test_hidden_panels_leave_the_whole_window_to_the_picture(hand: Hand) -> None
     assert hand.bench.stage.size[0] > 700
 
 
+def test_a_column_is_widened_by_its_edge(hand: Hand) -> None:
+    before = hand.bench.layout.right.width
+    hand.drag((hand.bench.layout.right.x, 300.0), (-100.0, 0.0))
+    hand.frames(2)
+    assert hand.bench.layout.right.width == pytest.approx(before + 100.0, abs=2.0)
+    assert hand.bench.stage.camera.yaw == hand.bench.stage.camera.start.yaw
+
+
+def test_a_dense_screen_gets_larger_text(hand: Hand) -> None:
+    usual = hand.bench.layout.menu_height
+    hand.surface = dataclasses.replace(hand.surface, dpi=2.0)
+    hand.frames(3)
+    assert hand.bench.layout.menu_height == pytest.approx(2 * usual, abs=2.0)
+
+
 def test_letters_typed_into_a_formula_are_no_commands(hand: Hand) -> None:
     hand.click("formula")
     hand.key(Key.h)
@@ -314,7 +330,7 @@ def test_a_window_without_a_scene_shows_the_list(make_hand: Callable[..., Hand],
     assert hand.bench.stage is None
     assert "unknown scene broken" in hand.bench.notice.text
     hand.frames(2)
-    hand.click("Tile##tile")
+    hand.click(" Tile##tile")
     assert hand.bench.stage.entry.name == "tile"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -211,6 +212,25 @@ class VertexArray:
         if known:
             known[1].release()
         index = None if isinstance(purpose, tuple) else self.index
-        made = self.program.gpu.context.vertex_array(variant.gl, list(self.content), index, skip_errors=True)
+        made = self.program.gpu.context.vertex_array(variant.gl, _used(self.content, variant.gl), index)
         self._arrays[purpose] = (variant, made)
         return made
+
+
+def _used(content: Iterable[tuple[Any, ...]], program: moderngl.Program) -> list[tuple[Any, ...]]:
+    """``content`` without the attributes that ``program`` has not: padding, lest GL is asked for a place -1."""
+    used = []
+    for buffer, layout, *names in content:
+        present = [name for name in names if isinstance(program.get(name, None), moderngl.Attribute)]
+        parts, slash, per = layout.partition("/")
+        waiting = iter(names)
+        kept = [part if "x" in part or next(waiting) in present else _padding(part) for part in parts.split()]
+        if present:
+            used.append((buffer, " ".join(kept) + slash + per, *present))
+    return used
+
+
+def _padding(part: str) -> str:
+    """As many bytes as a part of a buffer's format such as ``3f`` or ``4f1``."""
+    count, size = re.fullmatch(r"(\d*)[a-z]+(\d*)", part).groups()  # type: ignore[union-attr]
+    return f"{int(count or 1) * int(size or 4)}x"

@@ -233,9 +233,7 @@ class Stage:
 
     def _simulate_one(self) -> None:
         self._go_to(self.clock.frame + 1)
-        self._share_parameters()
-        self.painter.set_moment(self.camera, self.clock.frame)
-        self._guard("failed in update", lambda: self.scene.update(FRAME_SECONDS))
+        self._off_screen("failed in update", lambda: self.scene.update(FRAME_SECONDS))
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
         self._share_parameters()

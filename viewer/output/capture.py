@@ -28,9 +28,9 @@ def parse_frames(text: str) -> list[int]:
     frames: set[int] = set()
     for piece in text.split(","):
         try:
-            ends = [int(part) for part in piece.split(":")]
+            ends = [int(part) for part in piece.split(":", 2)]
             chosen: Sequence[int] = ends if len(ends) == 1 else range(*ends)
-            if len(ends) > 3 or not chosen or min(chosen[0], chosen[-1]) < 0 or len(chosen) > MOST_FRAMES:
+            if not chosen or min(chosen[0], chosen[-1]) < 0 or len(chosen) > MOST_FRAMES:
                 raise ValueError
         except (ValueError, OverflowError):
             raise ParameterError(f"frames = {text[:60]} is not a list such as 0,30,60 or a range such as "
@@ -42,7 +42,7 @@ def parse_frames(text: str) -> list[int]:
 def write_png(pixels: Pixels, path: Path) -> None:
     """Write a picture, whole or not at all; raises OutputError."""
     with whole_file(path) as temporary:
-        Image.fromarray(pixels).save(temporary, "PNG", compress_level=4)
+        Image.fromarray(pixels).save(temporary, compress_level=4)
 
 
 def capture(stage: Stage, frames: Sequence[int], folder: Path,

@@ -21,10 +21,12 @@ _contexts = threading.local()
 
 
 def shared_context() -> moderngl.Context:
-    """The thread's headless GL context, opened when first asked for; raises ContextError."""
+    """The thread's headless GL context, opened when first asked for and made current; raises ContextError."""
     if not hasattr(_contexts, "context"):
         _contexts.context = open_headless()
     context: moderngl.Context = _contexts.context
+    # A script may have used one of its own since; to leave it again would leave none current.
+    context.__enter__()  # type: ignore[no-untyped-call]
     return context
 
 
@@ -40,15 +42,14 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
     entry = Catalog(packs).find(scene)
     chosen = load_preset(entry, preset) if preset else None
     values = {**(chosen.values if chosen else {}), **(params or {})}
-    with shared_context() as context:       # the thread may have another one in use
-        stage = Stage(context, entry, size=size, samples=samples, params=values, seed=seed)
-        try:
-            pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
-            if pose:
-                stage.camera.pose(pose)
-            yield stage
-        finally:
-            stage.release()
+    stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
+    try:
+        pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
+        if pose:
+            stage.camera.pose(pose)
+        yield stage
+    finally:
+        stage.release()
 
 
 def render(scene: str, frame: int = 0, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,

@@ -92,8 +92,8 @@ class CodePanel:
             return
         editor.clear_markers()
         if here and problem:
-            edge, body = (imgui.get_color_u32(imgui.ImVec4(*color)) for color in (theme.WARNING, theme.WARNING_DEEP))
-            editor.add_marker(problem.line - 1, edge, body, problem.text, problem.text)
+            color = imgui.color_convert_float4_to_u32(imgui.ImVec4(*theme.WARNING_DEEP))
+            editor.add_marker(problem.line - 1, color, color, problem.text, problem.text)
             editor.scroll_to_line(problem.line - 1, TextEditor.Scroll.align_middle)
         self._marked = wanted
 

@@ -50,6 +50,7 @@ class HeadlessPanels:
 
     def _free_target(self) -> None:
         if self._target:
+            self.stage.context.detect_framebuffer(0).use()   # a framebuffer that is freed may not stay bound
             for buffer in self._target.color_attachments:
                 buffer.release()
             self._target.release()

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 VERTEX_BYTES = 20   # position 2f, texture coordinate 2f, colour 4 bytes
 INDEX_BYTES = 4
 FRAMES_IN_FLIGHT = 3
+FIRST_ROOM = 8192, 16384    # vertices and indices
 BLENDING = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
 
 VERTEX_SHADER = """
@@ -51,12 +52,15 @@ void main() {
 
 
 class Room:
-    """Buffers for one frame's triangles. There are a few, used in turn, so that none is still being read."""
+    """Memory for one frame's triangles, here and on the GPU; a few are used in turn, so that none is still read."""
 
-    def __init__(self, context: moderngl.Context, program: moderngl.Program, vertex_bytes: int,
-                 index_bytes: int) -> None:
-        self.vertices = context.buffer(reserve=vertex_bytes, dynamic=True)
-        self.indices = context.buffer(reserve=index_bytes, dynamic=True)
+    def __init__(self, context: moderngl.Context, program: moderngl.Program, vertex_count: int,
+                 index_count: int) -> None:
+        self.staged_vertices = np.zeros((vertex_count, VERTEX_BYTES), np.uint8)
+        self.staged_indices = np.zeros(index_count, np.uint32)
+        self.vertex_address, self.index_address = self.staged_vertices.ctypes.data, self.staged_indices.ctypes.data
+        self.vertices = context.buffer(reserve=self.staged_vertices.nbytes, dynamic=True)
+        self.indices = context.buffer(reserve=self.staged_indices.nbytes, dynamic=True)
         content = [(self.vertices, "2f 2f 4f1", "in_position", "in_texcoord", "in_color")]
         self.array = context.vertex_array(program, content, self.indices, index_element_size=INDEX_BYTES)
 
@@ -79,7 +83,7 @@ class ImguiRenderer:
         self._program["u_texture"] = 0
         self._textures: dict[int, moderngl.Texture] = {}
         self._lent: dict[int, moderngl.Texture] = {}
-        self._rooms = [Room(context, self._program, 1 << 17, 1 << 16) for _ in range(FRAMES_IN_FLIGHT)]
+        self._rooms = [Room(context, self._program, *FIRST_ROOM) for _ in range(FRAMES_IN_FLIGHT)]
         self._room = self._rooms[0]
 
     def lend(self, texture: moderngl.Texture) -> imgui.ImTextureRef:
@@ -156,22 +160,27 @@ class ImguiRenderer:
 
     def _upload(self, data: ImDrawData) -> None:
         """Send all lists at once; indices count from the start of the whole, as GL 3.3 wants them here."""
-        vertices, indices, base = [], [], 0
+        room = self._room = self._next_room(data.total_vtx_count, data.total_idx_count)
+        vertices, indices = 0, 0
         for commands in data.cmd_lists:
             vertex_count, index_count = commands.vtx_buffer.size(), commands.idx_buffer.size()
-            vertices.append(ctypes.string_at(commands.vtx_buffer.data_address(), vertex_count * VERTEX_BYTES))
-            raw = ctypes.string_at(commands.idx_buffer.data_address(), index_count * INDEX_BYTES)
-            indices.append(np.frombuffer(raw, np.uint32) + np.uint32(base))
-            base += vertex_count
-        vertex_bytes, index_array = b"".join(vertices), np.concatenate(indices)
+            ctypes.memmove(room.vertex_address + vertices * VERTEX_BYTES, commands.vtx_buffer.data_address(),
+                           vertex_count * VERTEX_BYTES)
+            ctypes.memmove(room.index_address + indices * INDEX_BYTES, commands.idx_buffer.data_address(),
+                           index_count * INDEX_BYTES)
+            if vertices:
+                room.staged_indices[indices:indices + index_count] += vertices
+            vertices, indices = vertices + vertex_count, indices + index_count
+        room.vertices.write(room.staged_vertices[:vertices])
+        room.indices.write(room.staged_indices[:indices])
+
+    def _next_room(self, vertex_count: int, index_count: int) -> Room:
         room = self._rooms.pop(0)
-        if len(vertex_bytes) > room.vertices.size or index_array.nbytes > room.indices.size:
+        if vertex_count > len(room.staged_vertices) or index_count > len(room.staged_indices):
             room.release()
-            room = Room(self.context, self._program, 2 * len(vertex_bytes), 2 * index_array.nbytes)
+            room = Room(self.context, self._program, 2 * vertex_count, 2 * index_count)
         self._rooms.append(room)
-        self._room = room
-        room.vertices.write(vertex_bytes)
-        room.indices.write(index_array)
+        return room
 
     def _update(self, texture: ImTextureData) -> None:
         if texture.status == imgui.ImTextureStatus.want_create:

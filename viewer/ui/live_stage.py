@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import moderngl
+
 from viewer.engine.catalog import SceneEntry
 from viewer.engine.shaders import ShaderError
 from viewer.engine.stage import Stage
@@ -44,15 +46,16 @@ def problem_of(error: Exception, entry: SceneEntry) -> Problem:
 class LiveStage:
     """Plays, draws, times and hot-reloads a stage, and remembers what went wrong last.
 
-    ``standing`` is an error of a file, there until the file is mended; ``problem`` is whatever the
-    banner has to say.
+    ``problem`` is what the banner has to say. ``query`` times the GPU; it is lent, since moderngl
+    cannot free one.
     """
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: Stage, query: moderngl.Query) -> None:
         self.stage = stage
         self.cpu_milliseconds = 0.0
         self.gpu_milliseconds: float | None = None
         self._failure: Problem | None = None
+        self._failed_doing, self._failed_with = "", -1
         self._shader_problem: Problem | None = None
         self._scene_problem: Problem | None = None
         self._scene_stamp = _stamp(stage.entry.file)
@@ -60,7 +63,7 @@ class LiveStage:
         self._since_watch = 0.0
         self._watches = 0
         self._drawn: object = None
-        self._query = stage.context.query(time=True)
+        self._query = query
         self._query_pending = False
 
     @property
@@ -76,22 +79,22 @@ class LiveStage:
     def advance(self, seconds: float) -> None:
         """Play on, and look after edited files now and then."""
         started = time.perf_counter()
-        self.attempt(lambda: self.stage.advance(seconds))
+        self.attempt("play", lambda: self.stage.advance(seconds))
         self.cpu_milliseconds = 1e3 * (time.perf_counter() - started)
         self._since_watch += seconds
         if self._since_watch >= WATCH_SECONDS:
             self._since_watch = 0.0
             self.watch()
 
-    def attempt(self, work: Callable[[], object]) -> bool:
-        """Do ``work`` on the stage; if it raises, pause, remember why and return False."""
+    def attempt(self, doing: str, work: Callable[[], object]) -> None:
+        """Do ``work`` on the stage; if it raises, pause and say why until the same goes well."""
         try:
-            work()
-            return True
+            if work() != 0 and self._failed_doing == doing:     # 0: there was no frame to play
+                self._failure = None
         except Exception as error:
-            self._failure = problem_of(error, self.stage.entry)
+            self._failure, self._failed_doing = problem_of(error, self.stage.entry), doing
+            self._failed_with = self.stage.params.revision
             self.stage.clock.playing = False
-            return False
 
     def watch(self) -> None:
         """Take over edited shader and scene files."""
@@ -117,7 +120,7 @@ class LiveStage:
         """Draw pictures of ``size`` from now on."""
         if size != self.stage.size:
             self._drawn = None
-            self.attempt(lambda: self.stage.resize(size))
+            self.attempt("resize", lambda: self.stage.resize(size))
 
     def render(self) -> None:
         """Draw the picture if anything that it shows has changed; the last good one stays otherwise."""
@@ -126,8 +129,9 @@ class LiveStage:
             return
         started = time.perf_counter()
         self._read_query()
-        if self.attempt(self._timed_render):
+        if self.stage.params.revision != self._failed_with:
             self._failure = None
+        self.attempt("draw", self._timed_render)
         self._drawn = state
         self.cpu_milliseconds += 1e3 * (time.perf_counter() - started)
 

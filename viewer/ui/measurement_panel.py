@@ -15,8 +15,11 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 PLOT_EMS = 15.0
-PLOT_FLAGS = implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_title | implot.Flags_.no_mouse_text
-AXIS_FLAGS = implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight
+PLOT_FLAGS: int = (implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_title
+                   | implot.Flags_.no_mouse_text)
+AXIS_FLAGS: int = implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight
+LEGEND_FLAGS: int = implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_buttons
+SERIES_COLORS = [imgui.ImVec4(*color) for color in theme.SERIES]
 
 
 class MeasurementPanel:
@@ -67,7 +70,7 @@ class MeasurementPanel:
             _axes(plot)
             for index, (name, x, y) in enumerate(plot.series):
                 spec = implot.Spec()
-                spec.line_color = imgui.ImVec4(*theme.SERIES[index % len(theme.SERIES)])
+                spec.line_color = SERIES_COLORS[index % len(SERIES_COLORS)]
                 spec.line_weight = 0.12 * imgui.get_font_size()
                 implot.plot_line(name, x, y, spec)
         finally:
@@ -81,5 +84,4 @@ def _axes(plot: Plot) -> None:
         implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
     if curve.log_y:
         implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
-    implot.setup_legend(implot.Location_.north, implot.LegendFlags_.outside | implot.LegendFlags_.horizontal
-                        | implot.LegendFlags_.no_buttons)
+    implot.setup_legend(implot.Location_.north, LEGEND_FLAGS)

@@ -12,12 +12,14 @@ from viewer.ui.layout import SCALES
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
+MENUS = tuple(dict.fromkeys(action.menu for action in ACTIONS))
+
 
 def draw(bench: Workbench) -> None:
     """The bar across the top, with the scale of the text at its right end."""
     if not imgui.begin_main_menu_bar():
         return
-    for name in dict.fromkeys(action.menu for action in ACTIONS):
+    for name in MENUS:
         if imgui.begin_menu(name):
             for action in ACTIONS:
                 if action.menu == name:

@@ -48,6 +48,10 @@ class Panels:
         for panel in (self.presets, self.parameters, self.lesson, self.code, self.timeline):
             panel.forget()
 
+    def release(self) -> None:
+        """Free what panels hold apart from ImGui itself."""
+        self.lesson.release()
+
     @staticmethod
     def text_metrics() -> tuple[float, float]:
         """Height of the text and of a menu bar, in the window's units."""
@@ -108,10 +112,13 @@ class Panels:
         return {first: self._draw_measurements, "Lesson": self.lesson.draw, "Code": self.code.draw}
 
     def _draw_tabs(self, tabs: dict[str, Callable[[], None]]) -> None:
-        if not imgui.begin_tab_bar("tabs", imgui.TabBarFlags_.fitting_policy_scroll):
-            return
         em = imgui.get_font_size()
         padding = imgui.ImVec2((0.3 if self.bench.layout.one_column else 0.5) * em, 0.25 * em)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, padding)
+        shown = imgui.begin_tab_bar("tabs", imgui.TabBarFlags_.fitting_policy_scroll)
+        imgui.pop_style_var()
+        if not shown:
+            return
         for title, draw in tabs.items():
             imgui.push_style_var(imgui.StyleVar_.frame_padding, padding)
             chosen = imgui.begin_tab_item(title)[0]

@@ -29,6 +29,7 @@ class PerformancePanel:
         self._next = 0
         self._last_draw: float | None = None
         self._read_at = 0.0
+        self._read_for: object = None
         self._rate = DASH
         self._times = ("", "")
 
@@ -58,8 +59,10 @@ class PerformancePanel:
             self._milliseconds[self._next] = 1e3 * (now - self._last_draw)
             self._next = (self._next + 1) % FRAMES_SHOWN
         self._last_draw = now
-        if now >= self._read_at or not self._times[0] or self.bench.steady:
-            self._read_at = now + READ_EVERY_SECONDS
+        stage = self.bench.stage
+        shown = (stage.size if stage else None, imgui.get_content_region_avail().x, imgui.get_font_size())
+        if shown != self._read_for or (now >= self._read_at and not self.bench.steady):
+            self._read_at, self._read_for = now + READ_EVERY_SECONDS, shown
             self._read()
 
     def _read(self) -> None:
@@ -70,10 +73,10 @@ class PerformancePanel:
         known = self._milliseconds[self._milliseconds > 0.0]
         self._rate = f"{1e3 / known.mean():.0f} fps" if known.size else f"{DASH} fps"
         cpu, panels = (DASH, DASH) if self.bench.steady else (
-            f"{live.cpu_milliseconds:.1f} ms", f"{self.bench.panel_milliseconds:.1f} ms")
-        on_gpu = DASH if self.bench.steady or gpu is None else f"{gpu:.1f} ms"
+            f"{live.cpu_milliseconds:.1f}", f"{self.bench.panel_milliseconds:.1f}")
+        on_gpu = DASH if self.bench.steady or gpu is None else f"{gpu:.1f}"
         width, height = live.stage.size
         size = f"{width} × {height}"
         room = imgui.get_content_region_avail().x - 10.0 * imgui.get_font_size()
-        times, place = f"CPU {cpu}   GPU {on_gpu}   panels {panels}", f"{size}   {self.renderer}"
+        times, place = f"CPU {cpu}   GPU {on_gpu}   panels {panels} ms", f"{size}   {self.renderer}"
         self._times = fitted(times, room), fitted(place, room)

@@ -38,6 +38,7 @@ class PictureView:
     def _move_camera(self) -> None:
         assert self.bench.stage
         io, camera, height = imgui.get_io(), self.bench.stage.camera, self.bench.layout.picture.height
+        self._drag(height)
         if not io.want_capture_mouse and self._over():
             if io.mouse_wheel:
                 camera.zoom(io.mouse_wheel)
@@ -46,13 +47,18 @@ class PictureView:
             for button in (LEFT, RIGHT, MIDDLE):
                 if self._dragging is None and imgui.is_mouse_clicked(button):
                     self._dragging = button
+
+    def _drag(self, height: float) -> None:
+        """Follow the mouse since the button went down, up to and including the frame in which it comes up."""
         if self._dragging is None:
             return
-        if not imgui.is_mouse_down(self._dragging):
-            self._dragging = None
-        elif io.mouse_delta.x or io.mouse_delta.y:
+        assert self.bench.stage
+        io, camera = imgui.get_io(), self.bench.stage.camera
+        if io.mouse_delta.x or io.mouse_delta.y:
             panning = self._dragging != LEFT or io.key_shift
             (camera.pan if panning else camera.drag)(io.mouse_delta.x / height, io.mouse_delta.y / height)
+        if not imgui.is_mouse_down(self._dragging):
+            self._dragging = None
 
     def _over(self) -> bool:
         box, mouse = self.bench.layout.picture, imgui.get_mouse_pos()

@@ -39,7 +39,7 @@ class SceneList:
         present = self.bench.stage.entry.name if self.bench.stage else ""
         for entry in self.bench.entries:
             selected = entry.name == present
-            if imgui.selectable(f"{title(entry.name)}##{entry.name}", selected)[0] and not selected:
+            if imgui.selectable(f" {title(entry.name)}##{entry.name}", selected)[0] and not selected:
                 self.bench.choose(entry.name)
             if selected:
                 _mark_item()

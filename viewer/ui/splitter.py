@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 THICKNESS_EMS = 0.4
+IN_FRONT = (FIXED & ~imgui.WindowFlags_.no_bring_to_front_on_focus) | imgui.WindowFlags_.no_background
 
 
 def draw(bench: Workbench) -> None:
@@ -36,7 +37,7 @@ def _handle(name: str, column: Box, x: float) -> float | None:
     imgui.set_next_window_size(imgui.ImVec2(thick, column.height))
     imgui.push_style_var(imgui.StyleVar_.window_padding, imgui.ImVec2(0, 0))
     imgui.push_style_var(imgui.StyleVar_.window_min_size, imgui.ImVec2(1, 1))
-    imgui.begin(name, None, FIXED | imgui.WindowFlags_.no_background)
+    imgui.begin(name, None, IN_FRONT)
     imgui.invisible_button(name, imgui.ImVec2(thick, max(1.0, column.height)))
     hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
     if hovered or active:

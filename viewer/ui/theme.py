@@ -134,7 +134,7 @@ def _install(style: imgui.Style) -> None:
 
 def _dress_plots(scale: float) -> None:
     style = implot.get_style()
-    style.plot_padding = imgui.ImVec2(4 * scale, 4 * scale)
+    style.plot_padding = imgui.ImVec2(10 * scale, 4 * scale)
     style.label_padding = imgui.ImVec2(4 * scale, 3 * scale)
     style.legend_padding = imgui.ImVec2(5 * scale, 4 * scale)
     style.legend_inner_padding = imgui.ImVec2(4 * scale, 3 * scale)

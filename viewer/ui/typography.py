@@ -10,6 +10,7 @@ from viewer.ui import theme
 from viewer.ui.theme import Fonts
 
 TOOLTIP_EMS = 22.0
+CLEAR = imgui.ImVec4(0, 0, 0, 0)
 RESTING = int(imgui.HoveredFlags_.for_tooltip | imgui.HoveredFlags_.allow_when_disabled)
 FIXED = (imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
          | imgui.WindowFlags_.no_bring_to_front_on_focus | imgui.WindowFlags_.no_nav)
@@ -40,7 +41,7 @@ def tooltip(text: Callable[[], str]) -> None:
 
 def icon_button(icon: str, name: str, explain: str, *, enabled: bool = True, width: float = 0.0) -> bool:
     """A button with a picture only, without a background until the mouse is on it."""
-    imgui.push_style_color(imgui.Col_.button, theme.rgb("#000000", 0.0))
+    imgui.push_style_color(imgui.Col_.button, CLEAR)
     imgui.begin_disabled(not enabled)
     pressed = imgui.button(f"{icon}##{name}", imgui.ImVec2(width, 0))
     imgui.end_disabled()

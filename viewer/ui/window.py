@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -88,6 +89,8 @@ class _Loop:
 
     def run(self) -> None:
         """Until the window is closed."""
+        gc.collect()
+        gc.freeze()     # what is there by now stays; looking through it again and again would cost frames
         last = time.perf_counter()
         while not self.window.is_closing:
             surface = self._surface()

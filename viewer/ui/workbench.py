@@ -56,6 +56,7 @@ class Workbench:
         self.surface: Surface | None = None
         self.picture_view = PictureView(self)
         self.panels = Panels(self)
+        self._query = context.query(time=True)
         self._toast_left = 0.0
         self._screenshot_due = False
         self._borrowed = False
@@ -87,7 +88,7 @@ class Workbench:
     def show(self, stage: Stage, *, borrowed: bool = False) -> None:
         """Put ``stage`` on and release the one before; a ``borrowed`` stage is released by its owner."""
         former, former_borrowed = self.live, self._borrowed
-        self.live, self._borrowed = LiveStage(stage), borrowed
+        self.live, self._borrowed = LiveStage(stage, self._query), borrowed
         self.measurer = Measurer(stage, patient=not self.steady)
         self.history = History()
         self.notice = None
@@ -141,13 +142,13 @@ class Workbench:
         if self.live:
             stage = self.live.stage
             stage.clock.playing = False
-            self.live.attempt(lambda: stage.step(frames))
+            self.live.attempt("play", lambda: stage.step(frames))
 
     def seek(self, frame: int) -> None:
         """Go to a frame."""
         if self.live:
             stage = self.live.stage
-            self.live.attempt(lambda: stage.seek(frame))
+            self.live.attempt("play", lambda: stage.seek(frame))
 
     def reset_camera(self) -> None:
         """Back to where the scene starts the camera."""
@@ -212,6 +213,8 @@ class Workbench:
         if self.live and not self._borrowed:
             self.live.release()
         self.live = None
+        self.session.make_current()
+        self.panels.release()
         self.session.release()
 
     # Inside

@@ -14,12 +14,13 @@ from tests.benchmarks.sphere import COLOR, SIZE, big_sphere, small_sphere
 
 VERTEX = """#version 330 core
 uniform float u_turn;
+uniform float u_size;
 in vec3 in_position;
 out vec3 v_normal;
 void main() {
     mat3 turn = mat3(cos(u_turn), 0.0, -sin(u_turn), 0.0, 1.0, 0.0, sin(u_turn), 0.0, cos(u_turn));
     v_normal = turn * in_position;
-    gl_Position = vec4(0.69 * v_normal * vec3(360.0 / 640.0, 1.0, -1.0), 1.0);
+    gl_Position = vec4(u_size * v_normal * vec3(360.0 / 640.0, 1.0, -1.0), 1.0);
 }
 """
 FRAGMENT = """#version 330 core
@@ -47,9 +48,10 @@ class Sphere:
         self.drawn = self.context.simple_framebuffer(SIZE, samples=samples) if samples else self.picture
         self.context.enable(moderngl.DEPTH_TEST)
 
-    def draw(self, number: int) -> NDArray[np.uint8]:
-        """Frame ``number`` of a turn, (height, width, 3), top row first."""
-        self.program["u_turn"] = 0.02 * number
+    def draw(self, number: int, *, swelling: bool = False) -> NDArray[np.uint8]:
+        """Frame ``number`` of a turn, or of swelling, (height, width, 3), top row first."""
+        self.program["u_turn"] = 0.0 if swelling else 0.02 * number
+        self.program["u_size"] = 0.69 * (1.0 + 0.05 * np.sin(number / 60.0)) if swelling else 0.69
         self.drawn.use()
         self.drawn.clear(0.6, 0.6, 0.6, 1.0, depth=1.0)
         self.mesh.render()
@@ -59,9 +61,10 @@ class Sphere:
         return np.ascontiguousarray(rows[::-1])
 
 
-def frames(samples: str) -> Callable[[int], object]:
-    """Frames of the large sphere."""
-    return Sphere(*big_sphere(), samples=int(samples)).draw
+def frames(samples: str, moving: str) -> Callable[[int], object]:
+    """Frames of the large sphere; the ``camera`` moves, or the ``mesh``."""
+    sphere = Sphere(*big_sphere(), samples=int(samples))
+    return lambda number: sphere.draw(number, swelling=moving == "mesh")
 
 
 if __name__ == "__main__":
