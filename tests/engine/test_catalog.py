@@ -86,7 +86,7 @@ def test_an_unknown_scene_is_refused_with_the_nearest_name(name: str, message: s
 @pytest.mark.parametrize("pack", ["/nowhere", __file__, "x" * 300, "a\0b"])
 def test_a_pack_without_scenes_is_refused(pack: str) -> None:
     """By its name."""
-    with pytest.raises(SceneError, match="pack .* (has no folder scenes|cannot be read)"):
+    with pytest.raises(SceneError, match=r"pack .* (has no folder scenes|cannot be read)"):
         Catalog([pack])
 
 

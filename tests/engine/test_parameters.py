@@ -104,7 +104,8 @@ def test_text_of_a_limit_stays_inside(end: float) -> None:
 
 
 @pytest.mark.parametrize(("name", "value", "expected"), [
-    ("amplitude", "0.1", 0.1), ("amplitude", 0, 0.0), ("amplitude", " 5e-1 ", 0.5), ("amplitude", np.float32(0.25), 0.25),
+    ("amplitude", "0.1", 0.1), ("amplitude", 0, 0.0), ("amplitude", " 5e-1 ", 0.5),
+    ("amplitude", np.float32(0.25), 0.25),
     ("count", "12", 12), ("count", 3.0, 3), ("count", np.int64(7), 7), ("count", "1e3", 1000),
     ("shown", "off", False), ("shown", "YES", True), ("shown", 0, False), ("shown", np.True_, True),
     ("direction", " x ", "x"),
@@ -194,7 +195,7 @@ def test_assigning_checks_first() -> None:
     """``params.amplitude = 9`` is no way round the limits."""
     params = Everything()
     params.amplitude = 0.3
-    with pytest.raises(ParameterError, match="is outside 0 to 0.5"):
+    with pytest.raises(ParameterError, match=r"is outside 0 to 0.5"):
         params.amplitude = 9
     assert params.amplitude == 0.3
 

@@ -75,7 +75,7 @@ def test_a_corrupt_preset_is_refused_in_one_line(tmp_path: Path, content: str, m
     """With the file's name and what is wrong with it."""
     path = tmp_path / "odd.toml"
     path.write_text(content)
-    with pytest.raises(PresetError, match="odd.toml") as refused:
+    with pytest.raises(PresetError, match=r"odd.toml") as refused:
         read_preset(path)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)

@@ -115,7 +115,7 @@ def test_an_edit_is_taken_over(edited: tuple[Stage, Edit]) -> None:
 @pytest.mark.parametrize(("name", "broken", "whole", "place"), [
     ("lib/inner.glsl", INNER.replace(";", "", 1), INNER.replace("0.5", "0.9"), "lib/inner.glsl:2: "),
     ("tile/draw.frag", WITH_INCLUDE.replace("core", "compatibility"), WITH_INCLUDE, "tile/draw.frag:1: the first line"),
-    ("tile/draw.frag", WITH_INCLUDE.replace("outer.", "out."), WITH_INCLUDE, "tile/draw.frag:3: no shader file lib/out"),
+    ("tile/draw.frag", WITH_INCLUDE.replace("outer.", "out."), WITH_INCLUDE, "tile/draw.frag:3: no shader file lib"),
     ("tile/draw.frag", "", WITH_INCLUDE, "tile/draw.frag:1: the first line"),
     ("tile/draw.frag", MISMATCHED, WITH_INCLUDE, "tile/draw.frag: "),
 ])
@@ -170,7 +170,8 @@ def test_captures_are_what_the_vertex_shader_computed(make_stage: MakeStage) -> 
 
 def test_attributes_that_a_purpose_does_not_use_are_passed_over(make_stage: MakeStage) -> None:
     """The shadow map needs no normals, a picture no tags; neither may upset the ones beside them, nor GL."""
-    vertex = packs.SHADERS["shaders/tile/draw.vert"].replace("uniform", "in vec2 in_middle;\nin float in_last;\nuniform", 1)
+    declared = "in vec2 in_middle;\nin float in_last;\nuniform"
+    vertex = packs.SHADERS["shaders/tile/draw.vert"].replace("uniform", declared)
     vertex = vertex.replace("v_value = vec3(u_height, float(gl_VertexID)", "v_value = vec3(in_middle.y, in_last")
     arrays = '''numbers = np.arange(28, dtype="f4").reshape(4, 7)
         bytes = np.zeros((4, 4), "u1")
@@ -217,6 +218,7 @@ def test_an_arena_frees_what_it_made_and_what_it_was_given(context: moderngl.Con
 
 def test_a_scene_that_fails_half_way_leaves_nothing(make_stage: MakeStage) -> None:
     """What its constructor had made by then is freed again."""
-    source = packs.TILE.replace("        self.built_with", "        gpu.buffer(reserve=64)\n        1 / 0\n        self.built_with")
+    made = "        gpu.buffer(reserve=64)\n        1 / 0\n"
+    source = packs.TILE.replace("        self.built_with", f"{made}        self.built_with")
     with pytest.raises(SceneError, match="ZeroDivisionError"):
         make_stage(source)

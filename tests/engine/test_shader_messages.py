@@ -74,7 +74,7 @@ def test_a_missing_root_file_is_named(shaders: Path) -> None:
 def test_the_first_line_is_the_version(shaders: Path, first: str) -> None:
     """GLSL 3.30 core and nothing else."""
     (shaders / "draw.vert").write_text(f"{first}\nvoid main() {{}}\n")
-    with pytest.raises(ShaderError, match="^draw.vert:1: the first line has to be #version 330 core$"):
+    with pytest.raises(ShaderError, match=r"^draw.vert:1: the first line has to be #version 330 core$"):
         flatten(shaders)
 
 
@@ -83,7 +83,7 @@ def test_any_editor_s_files_are_read(shaders: Path) -> None:
     (shaders / "draw.vert").write_bytes(b"\xef\xbb\xbf" + ROOT_FILE.replace("\n", "\r\n").encode())
     assert flatten(shaders).lines[0] == "#version 330 core"
     (shaders / "draw.vert").write_bytes(b"#version 330 core\n\xff")
-    with pytest.raises(ShaderError, match="^draw.vert: cannot be read"):
+    with pytest.raises(ShaderError, match=r"^draw.vert: cannot be read"):
         flatten(shaders)
 
 
@@ -119,7 +119,8 @@ MESSAGES = {
     "Apple": ("ERROR: 0:5: Use of undeclared identifier 'innr'\nERROR: 0:5: Invalid call of 'float'\n",
               "Use of undeclared identifier 'innr'"),
     "Apple, warned before": ("WARNING: 0:2: extension 'GL_ARB_x' is not supported\n"
-                             "ERROR: 0:5: Use of undeclared identifier 'innr'\n", "Use of undeclared identifier 'innr'"),
+                             "ERROR: 0:5: Use of undeclared identifier 'innr'\n",
+                             "Use of undeclared identifier 'innr'"),
     "Intel": ("ERROR: 0:5: 'innr' : undeclared identifier \nERROR: 0:5: '' : compilation terminated \n"
               "ERROR: 2 compilation errors.  No code generated.\n", "'innr' : undeclared identifier"),
     "AMD": ("ERROR: 0:5: error(#143) Undeclared identifier: innr\nERROR: error(#273) 1 compilation errors.\n",

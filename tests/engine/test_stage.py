@@ -150,7 +150,7 @@ def test_a_rebuild_that_fails_on_the_way_to_the_frame_changes_nothing(make_stage
     stage = make_stage(packs.WALK)
     stage.seek(10)
     before, picture = stage.params.stored(), stage.pixels()
-    with pytest.raises(SceneError, match="tile failed in update: tile.py:.*stumbled"):
+    with pytest.raises(SceneError, match=r"tile failed in update: tile.py:.*stumbled"):
         stage.set(breaks_at=5)
     assert (stage.frame, stage.params.stored()) == (10, before)
     assert stage.measure()["steps"] == 10
@@ -252,7 +252,8 @@ def test_a_shadow_darkens_the_floor(make_stage: MakeStage) -> None:
 
 def test_pictures_are_upright_opaque_and_encoded(make_stage: MakeStage) -> None:
     """Top row first, alpha 255, brighter for brighter."""
-    up = packs.SHADERS["shaders/tile/draw.frag"].replace("vec3(u_shade)", "vec3(u_shade) * (gl_FragCoord.y > 9.0 ? 1.0 : 0.0)")
+    upper = "vec3(u_shade) * (gl_FragCoord.y > 9.0 ? 1.0 : 0.0)"
+    up = packs.SHADERS["shaders/tile/draw.frag"].replace("vec3(u_shade)", upper)
     stage = make_stage(files={"shaders/tile/draw.frag": up}, params={"shade": 0.5})
     pixels = stage.pixels()
     assert pixels.shape == (18, 32, 4)
@@ -278,7 +279,8 @@ def test_samples_smooth_edges(make_stage: MakeStage) -> None:
 
 
 @pytest.mark.parametrize(("size", "samples", "message"), [
-    ((0, 0), 0, "a picture of 0x0 is outside 1x1 to"), ((99999, 99999), 0, "a picture of 99999x99999 is outside 1x1 to"),
+    ((0, 0), 0, "a picture of 0x0 is outside 1x1 to"),
+    ((99999, 99999), 0, "a picture of 99999x99999 is outside 1x1 to"),
     ((16, 16), 17, "samples = 17 is outside 0 to 16"), ((16, 16), -1, "samples = -1 is outside 0 to 16"),
     ((16000, 16000), 16, "needs [0-9.]+ GiB; at most 4 GiB is allowed"),
 ])
@@ -330,7 +332,8 @@ def test_a_scene_is_always_built_at_the_first_frame(make_stage: MakeStage) -> No
     vertex = packs.SHADERS["shaders/tile/draw.vert"].replace("out vec3", '#include "lib/frame.glsl"\nout vec3')
     source = packs.TILE.replace("self.built_with = params.sides",
                                 'self.built_with = float(self.array.capture({"v_value": 3}, 1)["v_value"][0, 2])')
-    stage = make_stage(source, files={"shaders/tile/draw.vert": vertex.replace("1.0);\n    gl", "u_frame.number);\n    gl")})
+    vertex = vertex.replace("1.0);\n    gl", "u_frame.number);\n    gl")
+    stage = make_stage(source, files={"shaders/tile/draw.vert": vertex})
     assert stage.measure()["sides"] == 0.0
     stage.seek(50)
     stage.set(sides=5)

@@ -11,12 +11,15 @@ import trimesh
 from viewer.kit import mesh
 
 SPHERES: dict[str, Callable[[], mesh.Mesh]] = {
-    "uv 2x3": lambda: mesh.uv_sphere(2, 3), "uv 3x5": lambda: mesh.uv_sphere(3, 5), "uv 24x48": lambda: mesh.uv_sphere(24, 48),
-    "cube 1": lambda: mesh.cube_sphere(1), "cube 3": lambda: mesh.cube_sphere(3), "cube 16": lambda: mesh.cube_sphere(16),
+    "uv 2x3": lambda: mesh.uv_sphere(2, 3), "uv 3x5": lambda: mesh.uv_sphere(3, 5),
+    "uv 24x48": lambda: mesh.uv_sphere(24, 48),
+    "cube 1": lambda: mesh.cube_sphere(1), "cube 3": lambda: mesh.cube_sphere(3),
+    "cube 16": lambda: mesh.cube_sphere(16),
     "ico 0": lambda: mesh.ico_sphere(0), "ico 1": lambda: mesh.ico_sphere(1), "ico 4": lambda: mesh.ico_sphere(4),
 }
 COUNTS = {
-    "uv 2x3": (5, 6), "uv 3x5": (12, 20), "uv 24x48": (23 * 48 + 2, 2 * 48 * 23), "cube 1": (8, 12), "cube 3": (56, 108),
+    "uv 2x3": (5, 6), "uv 3x5": (12, 20), "uv 24x48": (23 * 48 + 2, 2 * 48 * 23),
+    "cube 1": (8, 12), "cube 3": (56, 108),
     "cube 16": (6 * 256 + 2, 12 * 256), "ico 0": (12, 20), "ico 1": (42, 80), "ico 4": (2562, 5120),
 }
 

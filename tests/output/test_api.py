@@ -39,7 +39,7 @@ def test_headless_gives_a_stage_to_play_with(context: moderngl.Context) -> None:
         assert stage.pixels().shape == (36, 64, 4)
         assert {"vertices", "triangles", "normals"} == set(stage.geometry())
         assert stage.measure()["vertices"] == len(stage.geometry()["vertices"])
-        with pytest.raises(viewer.ParameterError, match="amplitude = 9 is outside 0 to 0.5"):
+        with pytest.raises(viewer.ParameterError, match=r"amplitude = 9 is outside 0 to 0.5"):
             stage.set(amplitude=9, direction="normal")
         assert stage.params.direction == "x"
 
@@ -58,7 +58,8 @@ def test_params_stand_above_the_preset_and_camera_above_both(context: moderngl.C
 @pytest.mark.parametrize(("arguments", "message"), [
     ({"scene": "rippling"}, "unknown scene rippling; did you mean rippling_sphere"),
     ({"params": {"amplitud": 1}}, "unknown parameter amplitud; did you mean amplitude"),
-    ({"preset": "nothing-like-it"}, "has no preset nothing-like-it"), ({"size": (0, 10)}, "a picture of 0x10 is outside"),
+    ({"preset": "nothing-like-it"}, "has no preset nothing-like-it"),
+    ({"size": (0, 10)}, "a picture of 0x10 is outside"),
     ({"frame": -1}, "frame = -1 is before the first"), ({"packs": ["/nowhere"]}, "pack /nowhere has no folder scenes"),
 ])
 def test_mistakes_are_one_family(context: moderngl.Context, arguments: dict[str, object], message: str) -> None:
@@ -104,10 +105,15 @@ def test_a_script_may_have_a_context_of_its_own(context: moderngl.Context) -> No
 def test_a_thread_may_draw(context: moderngl.Context) -> None:
     """Each thread has a context of its own."""
     pictures = []
-    thread = threading.Thread(target=lambda: pictures.append(viewer.render("rippling_sphere", size=(32, 32), params=SMALL)))
+
+    def draw() -> None:
+        pictures.append(viewer.render("rippling_sphere", size=(32, 32), params=SMALL))
+
+    thread = threading.Thread(target=draw)
     thread.start()
     thread.join()
-    assert np.array_equal(pictures[0], viewer.render("rippling_sphere", size=(32, 32), params=SMALL))
+    draw()
+    assert np.array_equal(*pictures)
 
 
 def test_every_public_name_is_there() -> None:

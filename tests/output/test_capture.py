@@ -27,7 +27,7 @@ def test_frames_are_lists_and_ranges(text: str, frames: list[int]) -> None:
     "0:2000000", "9" * 5000, "0x10", "nan"])
 def test_other_frames_are_refused(text: str) -> None:
     """With what would be right, in a line that one can read."""
-    with pytest.raises(ParameterError, match="^frames = .* is not a list such as 0,30,60 or a range") as refused:
+    with pytest.raises(ParameterError, match=r"^frames = .* is not a list such as 0,30,60 or a range") as refused:
         parse_frames(text)
     assert len(str(refused.value)) < 200
 

@@ -103,9 +103,10 @@ def test_pictures_that_differ_are_told_apart() -> None:
     """A wrong normal, a shift by a pixel and a tint are seen; a driver's rounding is not."""
     chance = np.random.default_rng(1)
     x, y = np.meshgrid(np.arange(320), np.arange(180))
-    picture = np.stack([128 + 100 * np.sin(0.05 * x), 128 + 100 * np.cos(0.07 * y), 0 * x + 90], axis=2).astype(np.uint8)
+    channels = [128 + 100 * np.sin(0.05 * x), 128 + 100 * np.cos(0.07 * y), 0 * x + 90]
+    picture = np.stack(channels, axis=2).astype(np.uint8)
     rounded = (picture + chance.integers(-1, 2, picture.shape)).astype(np.uint8)
-    rounded[:, ::1000][0, 0] = 0
+    rounded[0, 0] = 0
     assert same_to_the_pixel(picture, rounded) and same_to_the_eye(picture, rounded)
     for other in (np.roll(picture, 12, axis=1), picture[::-1], (picture * 0.9).astype(np.uint8)):
         assert not same_to_the_pixel(picture, other)
