@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer import (
+    ColorScale,
     Curve,
     Geometry,
     Gpu,
@@ -100,6 +101,11 @@ class RipplingSphere(Scene):
                 self.needle["u_way"] = list(WAYS).index(way)
                 self.needles.render(instances=self.params.needles)
 
+    def color_scale(self) -> ColorScale | None:
+        if self.params.colouring != "error":
+            return None
+        return ColorScale("normal error", 0.0, self.params.error_scale, "°")
+
     def geometry(self) -> Geometry:
         captured = self.surface.capture({"v_position": 3, "v_normal": 3}, len(self.vertices))
         return {"vertices": captured["v_position"], "triangles": self.triangles, "normals": captured["v_normal"]}
@@ -137,7 +143,8 @@ class RipplingSphere(Scene):
         points = mesh.normalized(points)
         function = self.params.displacement
         x, y, z = points.T
-        height = np.asarray(function.evaluate(x=x, y=y, z=z, t=self.time, **self.params.numbers(function)))
+        moment = {"t": self.time} if "t" in function.variables else {}
+        height = np.asarray(function.evaluate(x=x, y=y, z=z, **moment, **self.params.numbers(function)))
         height = np.where(np.abs(height) <= 100.0, height, 0.0)
         way = np.array([1.0, 0.0, 0.0]) if self.params.direction == "x" else points
         rippled: NDArray[np.float64] = points + height[:, None] * way

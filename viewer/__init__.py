@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         text,
         toggle,
     )
-    from viewer.engine.scene import Curve, Geometry, Measurements, Scene, Studio
+    from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.stage import Stage
     from viewer.errors import DemoscopeError
     from viewer.output.headless import headless, render
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "ColorScale",
     "Curve",
     "DemoscopeError",
     "Geometry",

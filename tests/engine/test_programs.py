@@ -173,15 +173,15 @@ def test_attributes_that_a_purpose_does_not_use_are_passed_over(make_stage: Make
     declared = "in vec2 in_middle;\nin float in_last;\nuniform"
     vertex = packs.SHADERS["shaders/tile/draw.vert"].replace("uniform", declared)
     vertex = vertex.replace("v_value = vec3(u_height, float(gl_VertexID)", "v_value = vec3(in_middle.y, in_last")
-    arrays = '''numbers = np.arange(28, dtype="f4").reshape(4, 7)
-        bytes = np.zeros((4, 4), "u1")
+    arrays = '''numbers = np.arange(24, dtype="f4").reshape(4, 6)
+        mixed = np.array([((0, 0, 0, 0), 10 * n) for n in range(4)], [("tint", "u1", 4), ("last", "f4")])
         self.array = gpu.vertex_array(self.program, [
-            (gpu.buffer(numbers), "3f 2f 1x4 1f", "in_first", "in_middle", "in_last"),
-            (gpu.buffer(bytes), "4f1 /v", "in_tint"), (gpu.buffer(bytes), "4f1 /i", "in_each")])'''
+            (gpu.buffer(numbers), "3f 2f 1x4 /v", "in_first", "in_middle"),
+            (gpu.buffer(mixed), "4f1 1f", "in_tint", "in_last"), (gpu.buffer(numbers), "1f 20x /i", "in_each")])'''
     source = packs.TILE.replace("self.array = gpu.vertex_array(self.program)", arrays)
     stage = make_stage(f"import numpy as np\n{source}", files={"shaders/tile/draw.vert": vertex})
     stage.render()
-    assert stage.geometry()["v_value"].tolist() == [[4 + 7 * n, 6 + 7 * n, 1] for n in range(4)]
+    assert stage.geometry()["v_value"].tolist() == [[4 + 6 * n, 10 * n, 1] for n in range(4)]
 
 
 def test_capturing_what_is_not_there_names_it(make_stage: MakeStage) -> None:

@@ -24,7 +24,7 @@ def test_frames_are_lists_and_ranges(text: str, frames: list[int]) -> None:
 
 @pytest.mark.parametrize("text", [
     "", "abc", "5:1", "-3", "-3:2", "0,,1", "1.5", "0:10:0", "0:1:2:3", ":", "3:3", "0:99999999999999999999",
-    "0:2000000", "9" * 5000, "0x10", "nan"])
+    "0:2000000", "9" * 12, "9" * 400, "9" * 5000, "0x10", "nan"])
 def test_other_frames_are_refused(text: str) -> None:
     """With what would be right, in a line that one can read."""
     with pytest.raises(ParameterError, match=r"^frames = .* is not a list such as 0,30,60 or a range") as refused:

@@ -62,6 +62,11 @@ class OrbitCamera:
         self.distance = float(np.clip(self.distance * 0.9 ** notches, nearest, farthest))
 
     @property
+    def look(self) -> tuple[float, ...]:
+        """All that a picture depends on of the camera, to tell whether it moved."""
+        return (self.yaw, self.pitch, self.distance, self.field_of_view, *map(float, self.target))
+
+    @property
     def eye(self) -> NDArray[np.float64]:
         """Where the camera is, (3,)."""
         yaw, pitch = math.radians(self.yaw), math.radians(self.pitch)

@@ -34,7 +34,7 @@ REMEDIES = (
     Remedy("found 0 devices", "EGL finds no driver", f"install Mesa or the GPU's driver; on Debian: {DEBIAN}"),
     Remedy("eglInitialize", "EGL has no driver that starts", f"install Mesa's drivers; on Debian: {DEBIAN}"),
     Remedy("eglCreateContext", "the driver's OpenGL is older than 3.3", "update the graphics driver"),
-    Remedy("cannot open display", "no display", "leave DISPLAY unset to draw without one, or start an X server"),
+    Remedy("open display", "no display", "leave DISPLAY unset to draw without one, or start an X server"),
     Remedy("X11", "the X server refuses a context", "update the graphics driver, or unset DISPLAY to draw without one"),
     Remedy("requested version", "the driver's OpenGL is older than 3.3",
            "update the graphics driver; a remote desktop may offer only OpenGL 1.1"),

@@ -82,10 +82,18 @@ class Painter:
         self._picture_arena.release()
         self._block.release()
 
-    def _cast_shadow(self, scene: Scene, frame: int, draw: Callable[[], None]) -> None:
+    def showing(self, scene: Scene, camera: OrbitCamera, frame: int) -> Hashable:
+        """Everything that a picture depends on: while this stays equal, drawing again would change nothing."""
+        return (self.scene_showing(scene, frame), camera.look, self.picture, self._picture_arena.generation)
+
+    def scene_showing(self, scene: Scene, frame: int) -> Hashable:
+        """Everything that the scene and its shadow depend on; the frame counts only where time moves it."""
         moves = scene.simulates or scene.reads_time or scene.gpu.reads_time
-        shows = (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
-                 frame if moves else None)
+        return (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
+                frame if moves else None)
+
+    def _cast_shadow(self, scene: Scene, frame: int, draw: Callable[[], None]) -> None:
+        shows = self.scene_showing(scene, frame)
         if shows == self._shadow_shows:
             return
         self._shadow_shows = None

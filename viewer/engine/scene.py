@@ -56,6 +56,16 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class ColorScale:
+    """What the colours of ``lib/color.glsl``'s viridis stand for, from its dark to its bright end."""
+
+    title: str
+    low: float
+    high: float
+    unit: str = ""
+
+
+@dataclass(frozen=True)
 class Studio:
     """The set a scene stands in: what to light and where the floor is.
 
@@ -122,6 +132,10 @@ class Scene:
     def geometry(self) -> Geometry:
         """What the GPU made for this frame, as named arrays."""
         return {}
+
+    def color_scale(self) -> ColorScale | None:
+        """What the colours now stand for, where they stand for a number; the window shows the scale."""
+        return None
 
     def measure(self) -> Measurements:
         """The numbers a lecturer would point at, and the curves to plot."""

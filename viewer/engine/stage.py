@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import TypeVar
 
 import moderngl
@@ -65,6 +65,16 @@ class Stage:
     def frame(self) -> int:
         """The frame that the scene stands at."""
         return self.clock.frame
+
+    @property
+    def showing(self) -> Hashable:
+        """Everything that the picture depends on: while this stays equal, ``render`` would change nothing."""
+        return self.painter.showing(self.scene, self.camera, self.clock.frame)
+
+    @property
+    def scene_showing(self) -> Hashable:
+        """Like ``showing``, without the camera and the picture: what measurements depend on."""
+        return self.painter.scene_showing(self.scene, self.clock.frame)
 
     def set(self, **values: object) -> None:
         """Set parameters by name, to values or to their text; all of them or, on an error, none."""

@@ -17,6 +17,7 @@ from viewer.whole_file import whole_file
 
 Pixels = NDArray[np.uint8]
 MOST_FRAMES = 1_000_000
+LAST_FRAME = 10**9
 FRAMES_WORTH_A_BAR = 10
 
 
@@ -30,7 +31,7 @@ def parse_frames(text: str) -> list[int]:
         try:
             ends = [int(part) for part in piece.split(":", 2)]
             chosen: Sequence[int] = ends if len(ends) == 1 else range(*ends)
-            if not chosen or min(chosen[0], chosen[-1]) < 0 or len(chosen) > MOST_FRAMES:
+            if not 0 < len(chosen) <= MOST_FRAMES or not all(0 <= end <= LAST_FRAME for end in (chosen[0], chosen[-1])):
                 raise ValueError
         except (ValueError, OverflowError):
             raise ParameterError(f"frames = {text[:60]} is not a list such as 0,30,60 or a range such as "

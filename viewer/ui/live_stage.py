@@ -11,12 +11,12 @@ from pathlib import Path
 import moderngl
 
 from viewer.engine.catalog import SceneEntry
+from viewer.engine.scene import ColorScale
 from viewer.engine.shaders import ShaderError
 from viewer.engine.stage import Stage
 from viewer.ui.guard import one_line
 
 WATCH_SECONDS = 0.2
-REDRAW_WATCHES = 10
 PLACE_IN_SCENE = re.compile(r"(?P<file>[\w.-]+\.py):(?P<line>\d+)")
 
 
@@ -61,7 +61,6 @@ class LiveStage:
         self._scene_stamp = _stamp(stage.entry.file)
         self._shader_error: ShaderError | None = None
         self._since_watch = 0.0
-        self._watches = 0
         self._drawn: object = None
         self._query = query
         self._query_pending = False
@@ -104,9 +103,6 @@ class LiveStage:
         if stamp != self._scene_stamp:
             self._scene_stamp = stamp
             self.reload()
-        self._watches = (self._watches + 1) % REDRAW_WATCHES
-        if not self._watches:    # the set's own shaders may have changed, which ``_state`` does not see
-            self._drawn = None
 
     def reload(self) -> None:
         """Build the scene from its file anew."""
@@ -124,16 +120,23 @@ class LiveStage:
 
     def render(self) -> None:
         """Draw the picture if anything that it shows has changed; the last good one stays otherwise."""
-        state = self._state()
-        if state == self._drawn:
+        if self.stage.showing == self._drawn:
             return
         started = time.perf_counter()
         self._read_query()
         if self.stage.params.revision != self._failed_with:
             self._failure = None
         self.attempt("draw", self._timed_render)
-        self._drawn = state
+        self._drawn = self.stage.showing
         self.cpu_milliseconds += 1e3 * (time.perf_counter() - started)
+
+    def color_scale(self) -> ColorScale | None:
+        """What the picture's colours stand for, if they stand for a number."""
+        try:
+            return self.stage.scene.color_scale()
+        except Exception as error:
+            self._failure, self._failed_doing = problem_of(error, self.stage.entry), "colour scale"
+            return None
 
     def release(self) -> None:
         """Free the stage."""
@@ -149,11 +152,6 @@ class LiveStage:
         if self._query_pending:
             self.gpu_milliseconds = self._query.elapsed * 1e-6
             self._query_pending = False
-
-    def _state(self) -> tuple[object, ...]:
-        stage, camera = self.stage, self.stage.camera
-        return (id(stage.scene), stage.scene.gpu.generation, stage.frame, stage.params.revision, stage.size,
-                camera.yaw, camera.pitch, camera.distance, camera.field_of_view, *camera.target)
 
 
 def _stamp(path: Path) -> tuple[int, int]:

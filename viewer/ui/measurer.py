@@ -49,7 +49,7 @@ class Measurer:
 
     def run(self, *, dragging: bool) -> None:
         """Measure if something changed, if it is time, and if no hand is on a slider meanwhile."""
-        state = (id(self.stage.scene), self.stage.frame, self.stage.params.revision)
+        state = self.stage.scene_showing
         if state == self._measured:
             return
         now = time.perf_counter()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from viewer.ui import theme
+from viewer.ui.color_scale import draw_color_scale
 
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
@@ -33,6 +34,9 @@ class PictureView:
             return
         shown = self.bench.session.renderer.lend(stage.picture.texture)
         behind.add_image(shown, *corners, imgui.ImVec2(0, 1), imgui.ImVec2(1, 0))
+        scale = self.bench.live.color_scale() if self.bench.live else None
+        if scale:
+            draw_color_scale(scale, box)
         self._move_camera()
 
     def _move_camera(self) -> None:
