@@ -25,7 +25,9 @@ from viewer import (
     text,
     toggle,
 )
-from viewer.engine.fields import Field, Interval, Slider
+from viewer.engine.fields import Field
+from viewer.engine.number_fields import Interval, Slider
+from viewer.engine.params import formula_uniform
 from viewer.kit.formula import parse
 
 KINDS = ("slider", "integer", "toggle", "choice", "color", "text", "formula", "file", "interval")
@@ -316,3 +318,11 @@ def test_impossible_declarations_are_refused() -> None:
         choice("red", ["green"], "")
     with pytest.raises(ParameterError, match="update cannot name a parameter"):
         type("Wrong", (Parameters,), {"update": slider(0, 0, 1, "")})
+
+
+def test_names_that_glsl_reserves_get_uniforms_of_their_own() -> None:
+    """Two underscores in a row are GLSL's own; no two names may share a uniform over it."""
+    names = ["a_b", "a__b", "a_0_b", "_a", "a_", "__", "a"]
+    uniforms = {formula_uniform("height", name) for name in names}
+    assert len(uniforms) == len(names)
+    assert not any("__" in uniform for uniform in uniforms)

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.matrices import Matrix, look_at, perspective
+from viewer.errors import DemoscopeError
 
 DEGREES_PER_HEIGHT = 180.0
 STEEPEST_PITCH = 89.0
+POSE_LIMITS = {"yaw": (-1e6, 1e6), "pitch": (-STEEPEST_PITCH, STEEPEST_PITCH), "distance": (1e-3, 1e4),
+               "target": (-1e4, 1e4)}
+
+
+class CameraError(DemoscopeError):
+    """A place where the camera cannot stand."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +35,24 @@ class Orbit:
     distance: float = 4.0
     target: tuple[float, float, float] = (0.0, 0.0, 0.0)
     field_of_view: float = 35.0
+
+    def moved(self, changes: Mapping[str, Any]) -> Orbit:
+        """This pose with other ``yaw``, ``pitch``, ``distance`` or ``target``; raises CameraError for anything else."""
+        for name, value in changes.items():
+            if name not in POSE_LIMITS:
+                raise CameraError(f"camera has {name}, which is none of {', '.join(POSE_LIMITS)}")
+            low, high = POSE_LIMITS[name]
+            count = 3 if name == "target" else 1
+            numbers = value if name == "target" else [value]
+            if not _are_numbers(numbers, count) or not all(low <= number <= high for number in numbers):
+                wanted = "three numbers" if name == "target" else "a number"
+                raise CameraError(f"camera {name} = {value} is not {wanted} from {low:g} to {high:g}")
+        return replace(self, **changes)
+
+
+def _are_numbers(values: Any, count: int) -> bool:
+    return (isinstance(values, (list, tuple)) and len(values) == count
+            and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values))
 
 
 class OrbitCamera:
@@ -44,6 +71,10 @@ class OrbitCamera:
         self.yaw, self.pitch, self.distance = float(pose.yaw), float(pose.pitch), float(pose.distance)
         self.target = np.asarray(pose.target, dtype=float)
         self.field_of_view = float(pose.field_of_view)
+
+    def stand(self, place: Orbit | Mapping[str, Any]) -> None:
+        """Take a pose over, or the start with some of its ``yaw``, ``pitch``, ``distance``, ``target`` changed."""
+        self.pose(place if isinstance(place, Orbit) else self.start.moved(place))
 
     def drag(self, right: float, down: float) -> None:
         """Turn by a drag given in heights of the picture."""

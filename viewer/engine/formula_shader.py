@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from viewer.engine.params import Parameters, formula_uniform
-from viewer.kit.formula import Formula, glsl_vector
+from viewer.kit.formula import Formula, glsl_vector, parse
 
-AXES = ("x", "y", "z")
+SOURCES = {"x": "p.x", "y": "p.y", "z": "p.z", "t": "u_frame.time"}
+ZERO = parse("0")
 
 
 def formula_include(params: Parameters, name: str) -> str:
@@ -15,15 +16,17 @@ def formula_include(params: Parameters, name: str) -> str:
     from ``lib/frame.glsl``, which has to be included first, and only where the formula has a ``t``.
     """
     formula: Formula = params.get(name)
-    sources = {"x": "p.x", "y": "p.y", "z": "p.z", "t": "u_frame.time"}
+    variables = params.field(name).limits()["variables"]
+    sources = {variable: source for variable, source in SOURCES.items() if variable in variables}
     numbers = [variable for variable in formula.variables if variable not in sources]
     sources |= {number: formula_uniform(name, number) for number in numbers}
-    arguments = [*AXES, *(variable for variable in formula.variables if variable not in AXES)]
+    arguments = list(formula.variables)
     gradient = formula.gradient()
+    slopes = [gradient[axis] if axis in variables else ZERO for axis in "xyz"]
     passed = ", ".join(sources[argument] for argument in arguments)
     return "\n".join([
         formula.glsl(f"{name}_formula", arguments),
-        glsl_vector(f"{name}_formula_gradient", [gradient[axis] for axis in AXES], arguments),
+        glsl_vector(f"{name}_formula_gradient", slopes, arguments),
         *(f"uniform float {sources[number]};" for number in numbers),
         f"float {name}(vec3 p) {{ return {name}_formula({passed}); }}",
         f"vec3 {name}_gradient(vec3 p) {{ return {name}_formula_gradient({passed}); }}",

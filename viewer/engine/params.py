@@ -13,22 +13,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, TypeAlias
 
-from viewer.engine.fields import (
-    Choice,
-    Color,
-    Field,
-    File,
-    FormulaField,
-    FormulaSlider,
-    Integer,
-    Interval,
-    ParameterError,
-    Slider,
-    Text,
-    Toggle,
-    Uniform,
-    nearest,
-)
+from viewer.engine.color_field import Color
+from viewer.engine.fields import Field, ParameterError, Uniform, nearest
+from viewer.engine.file_field import File
+from viewer.engine.formula_field import FormulaField
+from viewer.engine.number_fields import FormulaSlider, Integer, Interval, Slider
+from viewer.engine.word_fields import Choice, Text, Toggle
 from viewer.kit.formula import Formula
 
 Snapshot: TypeAlias = tuple[dict[str, Any], dict[str, Field[Any]]]
@@ -152,7 +142,8 @@ class Parameters:
 
 def formula_uniform(formula: str, name: str) -> str:
     """The uniform through which ``formula`` gets the number ``name``; its own, lest a shader declares both."""
-    return f"u_{formula}_{name}".replace("__", "_0_")
+    uniform = f"u_{formula}_{name}"
+    return f"u_{formula}_x{name.encode().hex()}" if "__" in uniform else uniform     # GLSL keeps __ for itself
 
 
 def _differs(field: Field[Any], before: Any, after: Any) -> bool:

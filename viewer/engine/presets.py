@@ -4,7 +4,7 @@
     description = "One sentence for the tooltip."
     [parameters]
     amplitude = 0.05
-    [camera]                     # optional: yaw, pitch, distance
+    [camera]                     # optional: yaw, pitch, distance, target
     yaw = 30
 """
 
@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from viewer.engine.camera import STEEPEST_PITCH, Orbit
+from viewer.engine.camera import CameraError, Orbit
 from viewer.engine.fields import nearest
 from viewer.errors import DemoscopeError
 from viewer.whole_file import whole_file
@@ -24,8 +24,6 @@ from viewer.whole_file import whole_file
 if TYPE_CHECKING:
     from viewer.engine.catalog import SceneEntry
     from viewer.engine.stage import Stage
-
-CAMERA_KEYS = ("yaw", "pitch", "distance")
 
 
 class PresetError(DemoscopeError):
@@ -41,12 +39,7 @@ class Preset:
     title: str
     description: str
     values: Mapping[str, Any]
-    camera: Mapping[str, float]
-
-    def pose(self, start: Orbit) -> Orbit | None:
-        """The camera of this preset, as far as it says one, the rest from ``start``."""
-        angles: dict[str, Any] = dict(self.camera)
-        return replace(start, **angles) if angles else None
+    camera: Mapping[str, Any]
 
 
 def user_folder(scene: str) -> Path:
@@ -100,10 +93,11 @@ def save_preset(entry: SceneEntry, stage: Stage, name: str, description: str = "
     """Write what ``stage`` shows as the user's preset ``name``; returns the file, written whole."""
     import tomli_w
 
-    if not name or len(name) > 60 or not all(letter.isalnum() or letter in " -_" for letter in name):
+    if not name.strip() or len(name) > 60 or not all(letter.isalnum() or letter in " -_" for letter in name):
         raise PresetError(f"preset name {name[:60]!r} may hold letters, digits, spaces, - and _, at most 60")
     path = user_folder(entry.name) / f"{name.strip().replace(' ', '-').lower()}.toml"
-    camera = {key: float(getattr(stage.camera, key)) for key in CAMERA_KEYS}
+    camera = {**{angle: getattr(stage.camera, angle) for angle in ("yaw", "pitch", "distance")},
+              "target": [float(along) for along in stage.camera.target]}
     data = {"title": name, "description": description, "parameters": stage.params.stored(), "camera": camera}
     with whole_file(path) as temporary:
         temporary.write_text(tomli_w.dumps(data), encoding="utf-8")
@@ -121,17 +115,10 @@ def _table(data: Mapping[str, Any], key: str, path: Path) -> dict[str, Any]:
     return table
 
 
-def _camera(data: Mapping[str, Any], path: Path) -> dict[str, float]:
+def _camera(data: Mapping[str, Any], path: Path) -> dict[str, Any]:
     camera = _table(data, "camera", path)
-    for key, value in camera.items():
-        if key not in CAMERA_KEYS:
-            raise PresetError(f"preset {path}: camera has {key}, which is none of {', '.join(CAMERA_KEYS)}")
-        if not isinstance(value, (int, float)) or not _is_sensible(key, value):
-            raise PresetError(f"preset {path}: camera {key} = {value} is not a sensible number")
+    try:
+        Orbit().moved(camera)
+    except CameraError as error:
+        raise PresetError(f"preset {path}: {error}") from error
     return camera
-
-
-def _is_sensible(key: str, value: float) -> bool:
-    if key == "pitch":
-        return abs(value) <= STEEPEST_PITCH
-    return abs(value) < 1e6 and (key != "distance" or value > 0)

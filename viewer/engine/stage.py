@@ -94,9 +94,8 @@ class Stage:
             self.update_params(self.params.completed(preset.values))
         except ParameterError as error:
             raise ParameterError(f"preset {preset.name}: {error}") from error
-        pose = preset.pose(self.scene_class.camera)
-        if pose:
-            self.camera.pose(pose)
+        if preset.camera:
+            self.camera.stand(preset.camera)
 
     def resize(self, size: tuple[int, int], samples: int | None = None) -> None:
         """Draw pictures of another size from now on; raises GpuError beyond the driver's limits."""

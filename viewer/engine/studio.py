@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike
 
-from viewer.engine.fields import Color, linear_light
+from viewer.engine.color_field import Color, linear_light
 from viewer.engine.gpu import Gpu
 from viewer.engine.matrices import Matrix, look_at, orthographic
 from viewer.engine.scene import Studio

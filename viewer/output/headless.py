@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -33,20 +34,21 @@ def shared_context() -> moderngl.Context:
 @contextmanager
 def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
              params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
-             camera: Orbit | None = None, packs: Iterable[str | Path] = ()) -> Iterator[Stage]:
+             camera: Orbit | Mapping[str, Any] | None = None, packs: Iterable[str | Path] = ()) -> Iterator[Stage]:
     """A stage with no window: set, seek, then take pixels, geometry or measurements.
 
-    ``preset`` comes first, then ``params``, whose values are Python values or text. Everything on
-    the GPU is freed at the end of the block. Raises a DemoscopeError for whatever cannot be.
+    ``preset`` comes first, then ``params``, whose values are Python values or text. ``camera`` is a
+    pose, or some of ``yaw``, ``pitch``, ``distance`` and ``target`` by name. Everything on the GPU is
+    freed at the end of the block. Raises a DemoscopeError for whatever cannot be.
     """
     entry = Catalog(packs).find(scene)
     chosen = load_preset(entry, preset) if preset else None
     values = {**(chosen.values if chosen else {}), **(params or {})}
     stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
     try:
-        pose = camera or (chosen.pose(stage.scene_class.camera) if chosen else None)
-        if pose:
-            stage.camera.pose(pose)
+        place = camera or (chosen.camera if chosen else None)
+        if place:
+            stage.camera.stand(place)
         yield stage
     finally:
         stage.release()
@@ -54,7 +56,7 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
 
 def render(scene: str, frame: int = 0, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
            params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
-           camera: Orbit | None = None, packs: Iterable[str | Path] = ()) -> NDArray[np.uint8]:
+           camera: Orbit | Mapping[str, Any] | None = None, packs: Iterable[str | Path] = ()) -> NDArray[np.uint8]:
     """One picture of a scene: uint8 (height, width, 4), top row first."""
     with headless(scene, size=size, samples=samples, params=params, preset=preset, seed=seed, camera=camera,
                   packs=packs) as stage:

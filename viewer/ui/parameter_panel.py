@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui
 
-from viewer.engine.fields import Field, FormulaField, FormulaSlider
+from viewer.engine.fields import Field
+from viewer.engine.formula_field import FormulaField
+from viewer.engine.number_fields import FormulaSlider
 from viewer.ui import theme
 from viewer.ui.guard import one_line, show_failure
 from viewer.ui.typed_fields import TypedFields

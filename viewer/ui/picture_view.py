@@ -8,6 +8,7 @@ from imgui_bundle import imgui
 
 from viewer.ui import theme
 from viewer.ui.color_scale import draw_color_scale
+from viewer.ui.layout import Box
 
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
@@ -41,8 +42,8 @@ class PictureView:
 
     def _move_camera(self) -> None:
         assert self.bench.stage
-        io, camera, height = imgui.get_io(), self.bench.stage.camera, self.bench.layout.picture.height
-        self._drag(height)
+        io, camera = imgui.get_io(), self.bench.stage.camera
+        self._drag(self.bench.layout.picture)
         if not io.want_capture_mouse and self._over():
             if io.mouse_wheel:
                 camera.zoom(io.mouse_wheel)
@@ -52,15 +53,18 @@ class PictureView:
                 if self._dragging is None and imgui.is_mouse_clicked(button):
                     self._dragging = button
 
-    def _drag(self, height: float) -> None:
+    def _drag(self, box: Box) -> None:
         """Follow the mouse since the button went down, up to and including the frame in which it comes up."""
         if self._dragging is None:
             return
         assert self.bench.stage
         io, camera = imgui.get_io(), self.bench.stage.camera
         if io.mouse_delta.x or io.mouse_delta.y:
-            panning = self._dragging != LEFT or io.key_shift
-            (camera.pan if panning else camera.drag)(io.mouse_delta.x / height, io.mouse_delta.y / height)
+            right, down = io.mouse_delta.x / box.height, io.mouse_delta.y / box.height
+            if self._dragging != LEFT or io.key_shift:
+                camera.pan(right, down, box.width / box.height)
+            else:
+                camera.drag(right, down)
         if not imgui.is_mouse_down(self._dragging):
             self._dragging = None
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui, portable_file_dialogs
 
-from viewer.engine.fields import Field, File, FormulaField
+from viewer.engine.fields import Field
+from viewer.engine.file_field import File
+from viewer.engine.formula_field import FormulaField
 from viewer.kit.formula import FormulaError
 from viewer.ui import theme
 from viewer.ui.guard import one_line

@@ -8,7 +8,10 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from viewer.engine.fields import Choice, Color, Field, Integer, Interval, Number, Slider, Toggle
+from viewer.engine.color_field import Color
+from viewer.engine.fields import Field
+from viewer.engine.number_fields import Integer, Interval, Number, Slider
+from viewer.engine.word_fields import Choice, Toggle
 from viewer.ui import theme
 from viewer.ui.typography import tooltip
 

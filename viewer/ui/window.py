@@ -28,7 +28,7 @@ MINIMISED_SECONDS = 0.1
 
 def run(catalog: Catalog, scene_name: str | None, *, size: tuple[int, int] = (1280, 800), samples: int = 4,
         seed: int = 0, params: Mapping[str, object] | None = None, preset: str | Path | None = None,
-        camera: Orbit | None = None) -> None:
+        camera: Orbit | Mapping[str, Any] | None = None) -> None:
     """Open the window on ``scene_name`` (None: the catalogue's first) and stay until it is closed.
 
     ``preset`` comes first, then ``params``, then ``camera``. A scene that cannot be loaded leaves its message in
@@ -60,7 +60,7 @@ def _opened(size: tuple[int, int]) -> GlfwWindow:
 
 
 def _begin(bench: Workbench, scene_name: str | None, params: Mapping[str, object] | None,
-           preset: str | Path | None, camera: Orbit | None) -> None:
+           preset: str | Path | None, camera: Orbit | Mapping[str, Any] | None) -> None:
     name = scene_name or next((entry.name for entry in bench.entries), None)
     if name is None:
         return
@@ -71,9 +71,9 @@ def _begin(bench: Workbench, scene_name: str | None, params: Mapping[str, object
         return
     if not bench.open(name, {**(chosen.values if chosen else {}), **(params or {})}) or not bench.stage:
         return
-    pose = camera or (chosen.pose(bench.stage.camera.start) if chosen else None)
-    if pose:
-        bench.stage.camera.pose(pose)
+    place = camera or (chosen.camera if chosen else None)
+    if place:
+        bench.stage.camera.stand(place)
 
 
 class _Loop:
