@@ -48,4 +48,5 @@ $(python):
 .venv/.ready-%: $(python) pyproject.toml
 	@echo "Installing Demoscope$(extras-$*) and what it needs into .venv; the first time takes a minute or two"
 	@$(python) -m pip install --quiet --disable-pip-version-check --editable '.$(extras-$*)'
+	@$(python) -m compileall -q viewer
 	@touch $@ .venv/.ready-run

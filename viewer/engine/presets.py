@@ -10,7 +10,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,6 +75,8 @@ def load_preset(entry: SceneEntry, name: str | Path) -> Preset:
 
 def read_preset(path: Path) -> Preset:
     """The preset in a file; raises PresetError naming the file and what is wrong with it."""
+    import tomllib
+
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -7,7 +7,7 @@ Pictures of our own are shown by telling the renderer their texture with ``lend`
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import moderngl
 import numpy as np
@@ -51,6 +51,15 @@ void main() {
 """
 
 
+class Batch(NamedTuple):
+    """Triangles that share a texture and a scissor box, by their place among all indices."""
+
+    texture: int
+    box: tuple[int, int, int, int]
+    indices: int
+    first: int
+
+
 class Room:
     """Memory for one frame's triangles, here and on the GPU; a few are used in turn, so that none is still read."""
 
@@ -85,32 +94,46 @@ class ImguiRenderer:
         self._lent: dict[int, moderngl.Texture] = {}
         self._rooms = [Room(context, self._program, *FIRST_ROOM) for _ in range(FRAMES_IN_FLIGHT)]
         self._room = self._rooms[0]
+        self._batches: list[Batch] = []
+        self._size = (0, 0)
 
     def lend(self, texture: moderngl.Texture) -> imgui.ImTextureRef:
-        """What to hand to ``imgui.image`` to show ``texture``; good until the end of the next ``draw``."""
+        """What to hand to ``imgui.image`` to show ``texture``; good until the panels are built anew."""
         self._lent[texture.glo] = texture
         return imgui.ImTextureRef(texture.glo)
 
+    def forget_lent(self) -> None:
+        """The panels are about to be built anew, and lend what they show again."""
+        self._lent.clear()
+
     def prepare(self, data: ImDrawData) -> None:
-        """Bring textures up to date and send the triangles to the GPU."""
+        """Bring textures up to date, send the triangles to the GPU and note how to draw them."""
         for texture in data.textures:
             if texture.status != imgui.ImTextureStatus.ok:
                 self._update(texture)
-        if data.total_idx_count:
+        self._size = (round(data.display_size.x * data.framebuffer_scale.x),
+                      round(data.display_size.y * data.framebuffer_scale.y))
+        self._batches = self._noted(data) if min(self._size) > 0 and data.total_idx_count else []
+        if self._batches:
+            scale = 2.0 / data.display_size.x, -2.0 / data.display_size.y
+            self._program["u_scale"] = scale
+            self._program["u_offset"] = -1.0 - data.display_pos.x * scale[0], 1.0 - data.display_pos.y * scale[1]
             self._upload(data)
 
-    def draw(self, data: ImDrawData, target: moderngl.Framebuffer) -> None:
-        """Draw ``data``, prepared before, over ``target``, which covers the whole of ImGui's display."""
-        width = round(data.display_size.x * data.framebuffer_scale.x)
-        height = round(data.display_size.y * data.framebuffer_scale.y)
-        if width > 0 and height > 0 and data.total_idx_count:
-            self._begin(data, target, (width, height))
-            try:
-                self._draw_lists(data, target, height)
-            finally:
-                target.scissor = None  # type: ignore[assignment]
-                self.context.disable(moderngl.BLEND)
-        self._lent.clear()
+    def draw(self, target: moderngl.Framebuffer) -> None:
+        """Draw what was prepared over ``target``, which covers the whole of ImGui's display; again, if need be."""
+        if not self._batches:
+            return
+        target.use()
+        target.viewport = (0, 0, *self._size)
+        self.context.enable_only(moderngl.BLEND)
+        self.context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
+        self.context.blend_func = BLENDING  # type: ignore[assignment]
+        try:
+            self._draw_batches(target)
+        finally:
+            target.scissor = None  # type: ignore[assignment]
+            self.context.disable(moderngl.BLEND)
 
     def release(self) -> None:
         """Free everything on the GPU and tell ImGui that its textures are gone."""
@@ -125,32 +148,26 @@ class ImguiRenderer:
             room.release()
         self._program.release()
 
-    def _begin(self, data: ImDrawData, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
-        target.use()
-        target.viewport = (0, 0, *size)
-        context = self.context
-        context.enable_only(moderngl.BLEND)
-        context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
-        context.blend_func = BLENDING  # type: ignore[assignment]
-        scale = 2.0 / data.display_size.x, -2.0 / data.display_size.y
-        self._program["u_scale"] = scale
-        self._program["u_offset"] = -1.0 - data.display_pos.x * scale[0], 1.0 - data.display_pos.y * scale[1]
-
-    def _draw_lists(self, data: ImDrawData, target: moderngl.Framebuffer, height: int) -> None:
-        bound, first_index = -1, 0
+    def _noted(self, data: ImDrawData) -> list[Batch]:
+        """Every command that shows something, in order."""
+        batches, first_index, height = [], 0, self._size[1]
         for commands in data.cmd_lists:
             for command in commands.cmd_buffer:
                 box = _clip(command, data, height)
-                if not box or not command.elem_count:
-                    continue
-                name = command.get_tex_id()
-                if name != bound:
-                    self._bind(name)
-                    bound = name
-                target.scissor = box
-                self._room.array.render(moderngl.TRIANGLES, vertices=command.elem_count,
-                                   first=first_index + command.idx_offset)
+                if box and command.elem_count:
+                    batches.append(Batch(command.get_tex_id(), box, command.elem_count,
+                                         first_index + command.idx_offset))
             first_index += commands.idx_buffer.size()
+        return batches
+
+    def _draw_batches(self, target: moderngl.Framebuffer) -> None:
+        bound = -1
+        for batch in self._batches:
+            if batch.texture != bound:
+                self._bind(batch.texture)
+                bound = batch.texture
+            target.scissor = batch.box
+            self._room.array.render(moderngl.TRIANGLES, vertices=batch.indices, first=batch.first)
 
     def _bind(self, name: int) -> None:
         texture = self._textures.get(name) or self._lent.get(name)

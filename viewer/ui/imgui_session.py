@@ -35,6 +35,7 @@ class ImguiSession:
     def __init__(self, context: moderngl.Context) -> None:
         self._imgui = imgui.create_context()
         self._implot = implot.create_context()
+        self.touched = False
         self.make_current()
         self._configure()
         self.fonts = theme.load_fonts()
@@ -43,7 +44,8 @@ class ImguiSession:
 
     @property
     def io(self) -> imgui.IO:
-        """Where input events go in."""
+        """Where input events go in; whoever asks for it is taken to have one."""
+        self.touched = True
         self.make_current()
         return imgui.get_io()
 
@@ -55,25 +57,27 @@ class ImguiSession:
 
     def frame(self, surface: Surface, seconds: float, scale: float, draw: Callable[[], None]) -> None:
         """Run ``draw`` as one frame of ImGui's and send the result to the GPU; ``paint`` shows it."""
-        io = self.io
+        self.make_current()
+        self.touched = False
+        io = imgui.get_io()
         if self._dressed != (scale, surface.dpi):
             theme.apply(scale, surface.dpi)
             self._dressed = (scale, surface.dpi)
         io.display_size = imgui.ImVec2(*surface.size)
         io.display_framebuffer_scale = imgui.ImVec2(*surface.pixel_ratio)
         io.delta_time = max(seconds, 1e-5)
+        self.renderer.forget_lent()
         imgui.new_frame()
         try:
             draw()
         finally:
             imgui.render()
-
         self.renderer.prepare(imgui.get_draw_data())
 
     def paint(self, target: moderngl.Framebuffer) -> None:
         """Draw the last frame's panels over ``target``."""
         self.make_current()
-        self.renderer.draw(imgui.get_draw_data(), target)
+        self.renderer.draw(target)
 
     def release(self) -> None:
         """Free everything on the GPU and both contexts."""

@@ -35,7 +35,7 @@ class PerformancePanel:
 
     def draw(self, *, one_row: bool) -> None:
         """The plot on the left, two lines of text on its right."""
-        self._clock()
+        self._refresh()
         em = imgui.get_font_size()
         height = imgui.get_frame_height() if one_row else imgui.get_content_region_avail().y
         width = 8.0 * em
@@ -53,12 +53,19 @@ class PerformancePanel:
         imgui.end_group()
         tooltip(lambda: f"{self.renderer}\nCPU: playing and drawing the scene. GPU: drawing it. Panels: drawing these.")
 
-    def _clock(self) -> None:
-        now = 0.0 if self.bench.steady else time.perf_counter()
-        if self._last_draw is not None and not self.bench.steady:
+    def tick(self) -> None:
+        """A frame is done: note how long after the one before."""
+        if self.bench.steady:
+            return
+        now = time.perf_counter()
+        if self._last_draw is not None:
             self._milliseconds[self._next] = 1e3 * (now - self._last_draw)
             self._next = (self._next + 1) % FRAMES_SHOWN
         self._last_draw = now
+
+    def _refresh(self) -> None:
+        """Write the figures anew, a few times a second or where they have to fit otherwise."""
+        now = 0.0 if self.bench.steady else time.perf_counter()
         stage = self.bench.stage
         shown = (stage.size if stage else None, imgui.get_content_region_avail().x, imgui.get_font_size())
         if shown != self._read_for or (now >= self._read_at and not self.bench.steady):
@@ -73,7 +80,7 @@ class PerformancePanel:
         known = self._milliseconds[self._milliseconds > 0.0]
         self._rate = f"{1e3 / known.mean():.0f} fps" if known.size else f"{DASH} fps"
         cpu, panels = (DASH, DASH) if self.bench.steady else (
-            f"{live.cpu_milliseconds:.1f}", f"{self.bench.panel_milliseconds:.1f}")
+            f"{live.cpu_milliseconds:.1f}", f"{self.bench.pace.cpu_milliseconds:.1f}")
         on_gpu = DASH if self.bench.steady or gpu is None else f"{gpu:.1f}"
         width, height = live.stage.size
         size = f"{width} × {height}"

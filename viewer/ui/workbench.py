@@ -22,6 +22,7 @@ from viewer.ui.imgui_session import ImguiSession, Surface
 from viewer.ui.layout import Box, Layout, View, arrange
 from viewer.ui.live_stage import LiveStage, Problem
 from viewer.ui.measurer import Measurer
+from viewer.ui.pace import Pace
 from viewer.ui.panels import Panels
 from viewer.ui.picture_view import PictureView
 
@@ -49,7 +50,7 @@ class Workbench:
         self.history = History()
         self.notice: Problem | None = None
         self.toast = ""
-        self.panel_milliseconds = 0.0
+        self.pace = Pace()
         self.on_fullscreen: Callable[[], None] = lambda: None
         self.session = ImguiSession(context)
         self.layout = Layout(Box())
@@ -93,6 +94,7 @@ class Workbench:
         self.history = History()
         self.notice = None
         self.panels.stage_changed()
+        self.pace.hurry()
         if former and not former_borrowed:
             former.release()
 
@@ -191,16 +193,17 @@ class Workbench:
         if self.live and not self.steady:
             self.live.advance(min(seconds, LONGEST_WALL_STEP))
         self.surface = surface
-        started = cpu_seconds()
-        self.session.frame(surface, seconds, self.view.scale, self._draw_panels)
-        self.panel_milliseconds = 1e3 * (cpu_seconds() - started)
+        building = self._build_panels(seconds, surface)
         if self.live and self.measurer and self.panels.measurements_visible:
             self.measurer.run(dragging=self.panels.hand_on_widget)
         if self.live and self.layout.picture.shown:
             self.live.render()
         surface.target.use()
         surface.target.clear(0.0, 0.0, 0.0, 1.0)
+        started = cpu_seconds()
         self.session.paint(surface.target)
+        self.pace.spent(building + cpu_seconds() - started)
+        self.panels.performance.tick()
         if self._screenshot_due:
             self._screenshot_due = False
             screenshot.save(self, screenshot.surface_pixels(surface))
@@ -218,6 +221,17 @@ class Workbench:
         self.session.release()
 
     # Inside
+
+    def _build_panels(self, seconds: float, surface: Surface) -> float:
+        """Build the panels if that is due; returns the CPU seconds that it took."""
+        passed = self.pace.due(seconds, surface, touched=self.session.touched)
+        if self.steady:
+            passed = seconds
+        if not passed:
+            return 0.0
+        started = cpu_seconds()
+        self.session.frame(surface, passed, self.view.scale, self._draw_panels)
+        return cpu_seconds() - started
 
     def _draw_panels(self) -> None:
         assert self.surface
