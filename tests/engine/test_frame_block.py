@@ -6,10 +6,12 @@ import math
 import re
 from pathlib import Path
 
+import moderngl
 import numpy as np
 import pytest
 
 from tests.conftest import MakeStage
+from viewer.engine import labels
 from viewer.engine.camera import Orbit
 from viewer.engine.frame import FRAME
 
@@ -117,3 +119,14 @@ def test_every_field_arrives(make_stage: MakeStage, scene: str) -> None:
     assert np.append(read["center"], 1) @ to_shadow == pytest.approx([0.5, 0.5, 0.5, 1.0], abs=1e-6)
     nearest = np.append(read["center"] + 2.5 * read["key_direction"], 1) @ to_shadow
     assert nearest == pytest.approx([0.5, 0.5, 0.0, 1.0], abs=1e-6)
+
+
+def test_an_object_goes_without_a_name_where_the_driver_refuses(context: moderngl.Context) -> None:
+    """An error left over from before costs the label, not the picture."""
+    buffer = context.buffer(reserve=4)
+    context.enable_direct(0xBAD)                    # GL_INVALID_ENUM, pending
+    labels.label(buffer, "x" * 1000)
+    assert context.error == "GL_NO_ERROR"
+    labels.label(buffer, "named")
+    assert buffer.label == "named"
+    buffer.release()

@@ -11,6 +11,8 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike
 
+from viewer.engine.labels import label
+
 FRAME_BINDING = 0
 SHADOW_NEAR_UNIT = 15
 SHADOW_WIDE_UNIT = 14
@@ -36,7 +38,7 @@ class FrameBlock:
     def __init__(self, context: moderngl.Context) -> None:
         self._values = np.zeros((), FRAME)
         self._buffer = context.buffer(reserve=FRAME.itemsize)
-        self._buffer.label = "Frame"
+        label(self._buffer, "Frame")
 
     def write(self, values: Mapping[str, ArrayLike]) -> None:
         """Set the fields named in ``values`` and send the whole block."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from viewer.engine.fields import Uniform
+from viewer.engine.labels import label as name_object
 from viewer.engine.params import Parameters
 from viewer.engine.program import Program, VertexArray
 from viewer.engine.shaders import Generated, ShaderError, ShaderFolders
@@ -41,7 +42,7 @@ class Gpu:
     def own(self, thing: Any, label: str) -> Any:
         """Record a GL object made elsewhere, so that ``release`` frees it too."""
         if label:
-            thing.label = label
+            name_object(thing, label)
         self._owned.append(thing)
         return thing
 

@@ -13,6 +13,11 @@ MOST_SAMPLES = 16
 MOST_BYTES = 4 * 2**30
 
 
+def most_samples(context: moderngl.Context) -> int:
+    """How many samples a pixel can have in a texture that is drawn into together with a depth buffer."""
+    return min(context.max_samples, context.info.get("GL_MAX_COLOR_TEXTURE_SAMPLES", context.max_samples))
+
+
 class Picture:
     """Render targets of one size. ``texture`` is the finished picture, 8-bit sRGB, bottom row first."""
 
@@ -26,7 +31,7 @@ class Picture:
                            f"at most {MOST_BYTES / 2**30:.0f} GiB is allowed")
         self.size = size
         self.gpu = gpu
-        self.samples = min(samples, gpu.context.max_samples) if samples > 1 else 0
+        self.samples = min(samples, most_samples(gpu.context)) if samples > 1 else 0
         self._linear = self._target()
         self.texture = gpu.texture(size, 4, label="finished picture")
         self._finished = gpu.framebuffer([self.texture], label="finished")

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.fields import Uniform
 from viewer.engine.frame import FRAME_BINDING, SHADOW_NEAR_UNIT, SHADOW_WIDE_UNIT
+from viewer.engine.labels import label
 from viewer.engine.shaders import Generated, ShaderError, Source, explain
 
 if TYPE_CHECKING:
@@ -156,7 +157,7 @@ class Program:
             linked = self.gpu.context.program(**stages)
         except Exception as error:
             raise explain(str(error), sources, self.name) from error
-        linked.label = f"{self.name} {purpose}"
+        label(linked, f"{self.name} {purpose}")
         units = {"u_shadow_near": SHADOW_NEAR_UNIT, "u_shadow_wide": SHADOW_WIDE_UNIT}
         return Variant(linked, units, {"Frame": FRAME_BINDING})
 

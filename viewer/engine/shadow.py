@@ -15,7 +15,6 @@ from viewer.engine.matrices import Matrix
 DEPTH_SIZE = 512
 NEAR_SIZE = 256
 WIDE_SIZE = 128
-GL_DEPTH_CLAMP = 0x864F     # what stands before the light's near plane casts its shadow all the same
 
 
 class ShadowMap:
@@ -45,11 +44,12 @@ class ShadowMap:
         self._casting.use()
         self._casting.clear(depth=1.0)
         self.gpu.context.enable_only(moderngl.DEPTH_TEST)
-        self.gpu.context.enable_direct(GL_DEPTH_CLAMP)
+        # What stands before the light's near plane casts its shadow all the same.
+        self.gpu.context.depth_clamp_range = (0.0, 1.0)
         try:
             draw()
         finally:
-            self.gpu.context.disable_direct(GL_DEPTH_CLAMP)
+            self.gpu.context.depth_clamp_range = None  # type: ignore[assignment]
         self._blur_all()
 
     def bind(self) -> None:

@@ -14,6 +14,8 @@ import numpy as np
 from imgui_bundle import imgui
 from numpy.typing import NDArray
 
+from viewer.engine.labels import label
+
 if TYPE_CHECKING:
     from imgui_bundle.imgui import ImDrawCmd, ImDrawData, ImTextureData
 
@@ -202,7 +204,7 @@ class ImguiRenderer:
     def _update(self, texture: ImTextureData) -> None:
         if texture.status == imgui.ImTextureStatus.want_create:
             made = self.context.texture((texture.width, texture.height), 4, _pixels(texture).tobytes())
-            made.label = "imgui glyphs"
+            label(made, "imgui glyphs")
             self._textures[made.glo] = made
             texture.set_tex_id(made.glo)
             texture.set_status(imgui.ImTextureStatus.ok)
