@@ -15,7 +15,7 @@ MOST_BYTES = 4 * 2**30
 
 def most_samples(context: moderngl.Context) -> int:
     """How many samples a pixel can have in a texture that is drawn into together with a depth buffer."""
-    return min(context.max_samples, context.info.get("GL_MAX_COLOR_TEXTURE_SAMPLES", context.max_samples))
+    return min(context.max_samples, int(context.info.get("GL_MAX_COLOR_TEXTURE_SAMPLES", context.max_samples)))
 
 
 class Picture:

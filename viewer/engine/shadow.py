@@ -49,7 +49,7 @@ class ShadowMap:
         try:
             draw()
         finally:
-            self.gpu.context.depth_clamp_range = None  # type: ignore[assignment]
+            self.gpu.context.depth_clamp_range = None
         self._blur_all()
 
     def bind(self) -> None:
