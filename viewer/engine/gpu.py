@@ -111,13 +111,15 @@ class Gpu:
         return made
 
     def vertex_array(self, program: Program, content: Sequence[tuple[Any, ...]] = (),
-                     index: moderngl.Buffer | None = None, *, mode: int = moderngl.TRIANGLES) -> VertexArray:
+                     index: moderngl.Buffer | None = None, *, mode: int = moderngl.TRIANGLES,
+                     closed: bool = False) -> VertexArray:
         """Buffers bound to a program's attributes: ``[(buffer, "3f", "in_position"), ...]``.
 
         A format that ends in ``/i`` steps once per instance. Attributes that the program does not
-        use are skipped. ``index`` holds 32-bit indices.
+        use are skipped. ``index`` holds 32-bit indices. ``closed`` promises a surface of which only the
+        outside, with its triangles counter-clockwise, is ever seen: the rest is left out, which is faster.
         """
-        made = VertexArray(program, tuple(content), index, mode)
+        made = VertexArray(program, tuple(content), index, mode, closed)
         self.own(made, "")
         return made
 

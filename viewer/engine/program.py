@@ -172,14 +172,19 @@ class VertexArray:
     """Buffers bound to a program; it follows the program through reloads and purposes."""
 
     def __init__(self, program: Program, content: tuple[tuple[Any, ...], ...], index: moderngl.Buffer | None,
-                 mode: int) -> None:
-        self.program, self.content, self.index, self.mode = program, content, index, mode
+                 mode: int, closed: bool) -> None:
+        self.program, self.content, self.index, self.mode, self.closed = program, content, index, mode, closed
         self._arrays: dict[object, tuple[Variant, moderngl.VertexArray]] = {}
 
     def render(self, *, vertices: int = -1, instances: int = -1) -> None:
         """Draw, in colour or into the shadow map as the stage asks for."""
         purpose = "depth" if self.program.gpu.casting_shadows else "colour"
+        context = self.program.gpu.context
+        if self.closed:
+            context.enable(moderngl.CULL_FACE)
         self._bound(purpose).render(self.mode, vertices=vertices, instances=instances)
+        if self.closed:
+            context.disable(moderngl.CULL_FACE)
 
     def capture(self, varyings: Mapping[str, int], count: int) -> dict[str, NDArray[np.float32]]:
         """What the vertex shader computes for vertices 0 to ``count`` - 1, by transform feedback.

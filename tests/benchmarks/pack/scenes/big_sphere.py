@@ -19,7 +19,7 @@ class BigSphere(Scene):
         vertices, triangles = mesh.uv_sphere(params.bands, params.bands)
         program = gpu.program("big_sphere/surface.vert", "big_sphere/surface.frag")
         corners = gpu.buffer(vertices.astype("f4"), label="sphere")
-        self.surface = gpu.vertex_array(program, [(corners, "3f", "in_position")], gpu.buffer(triangles))
+        self.surface = gpu.vertex_array(program, [(corners, "3f", "in_position")], gpu.buffer(triangles), closed=True)
 
     def draw(self) -> None:
         self.surface.render()
