@@ -33,6 +33,7 @@ TESSELLATIONS = {
 }
 EPSILONS = np.logspace(-7, 0, 29)
 PROBES = 4096
+BATCH = 16384       # vertices measured at once: as many as stay in the processor's cache
 WAYS = {
     "none": "The sphere's own normal, as if nothing had moved",
     "notes": "As the lecture wrote it: add the derivative to the normal",
@@ -112,7 +113,9 @@ class RipplingSphere(Scene):
 
     def measure(self) -> Measurements:
         normals = self.surface.capture({"v_normal": 3}, len(self.vertices))["v_normal"]
-        error = angles_to_nearest(normals, self.true_normals(self.vertices.astype("f4")))
+        points, batches = self.vertices.astype("f4"), range(0, len(normals), BATCH)
+        error = np.concatenate([angles_to_nearest(normals[start:start + BATCH],
+                                                  self.true_normals(points[start:start + BATCH])) for start in batches])
         area = mesh.vertex_areas(self.vertices, self.triangles)
         return {
             "vertices": len(self.vertices),

@@ -384,3 +384,47 @@ def test_ctrl_c_ends_a_capture_at_once(tmp_path: Path) -> None:
     assert "Traceback" not in errors
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
     assert all(pixels(path).shape == (360, 640, 4) for path in tmp_path.iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a POSIX shell")
+@pytest.mark.parametrize(("closed", "words", "status"), [
+    (">&-", ["list"], 0), ("2>&-", ["capture", *SPHERE, "--frames", "0:11", "--out", "."], 0),
+    (">&- 2>&-", ["measure", "nope"], 2)])
+def test_streams_may_be_closed(tmp_path: Path, closed: str, words: list[str], status: int) -> None:
+    """As some services start their programs: what there is to say goes nowhere, the work is done."""
+    command = ["sh", "-c", f'exec "$0" "$@" {closed}', sys.executable, "-m", "viewer", *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path,
+                          env={**os.environ, "PYTHONPATH": str(Path.cwd())})
+    assert (done.returncode, done.stderr) == (status, "")
+
+
+def test_a_name_that_the_terminal_cannot_write_is_no_error(tmp_path: Path) -> None:
+    """The picture is there; its name is printed as far as the terminal's letters go."""
+    done = demoscope("capture", *SPHERE, "--size", "8x8", "--out", str(tmp_path / "\u00fc"), PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.strip().endswith("\\xfc/rippling_sphere-000000.png")
+
+
+@pytest.mark.parametrize(("where", "body", "command"), [
+    ("measure", "return {'depth': 'deep'}", "measure"), ("measure", "return [1, 2]", "measure"),
+    ("geometry", "return {'vertices': ['x'], 'triangles': [[0, 1, 2]]}", "export"),
+    ("geometry", "return {'vertices': [[0, 0, 0]], 'triangles': [[0, 1, 2]]}", "export")])
+def test_what_no_scene_may_give_is_one_line(tmp_path: Path, refused: Run, scene_pack: ScenePack, where: str, body: str,
+                                            command: str) -> None:
+    pack = scene_pack(tile=packs.failing(where, body))
+    words = ["--out", str(tmp_path / "tile.ply")] if command == "export" else []
+    refused(command, "tile", "--pack", str(pack), *words)
+
+
+@pytest.mark.parametrize("where", ["__init__", "draw", "update"])
+def test_a_scene_that_exits_is_one_line(tmp_path: Path, refused: Run, scene_pack: ScenePack, where: str) -> None:
+    pack = scene_pack(tile=packs.failing(where, "raise SystemExit(3)"))
+    line = refused("capture", "tile", "--pack", str(pack), "--out", str(tmp_path), "--frames", "1", "--size", "8x8")
+    assert "SystemExit: 3" in line
+
+
+def test_a_capture_with_panels_fails_with_its_scene(tmp_path: Path, refused: Run, scene_pack: ScenePack) -> None:
+    """A picture of the message would pass for a good one."""
+    pack = scene_pack(tile=packs.failing("draw"))
+    line = refused("capture", "tile", "--pack", str(pack), "--out", str(tmp_path), "--panels")
+    assert "tile failed in draw" in line

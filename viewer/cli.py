@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import atexit
 import gc
+import io
 import json
 import os
 import sys
@@ -27,6 +28,7 @@ PICTURE_FOLDER = Path("captures")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status."""
     atexit.register(gc.freeze)      # whatever is left goes with the process; no need to look through it for cycles
+    _make_streams_sure()
     options = parse(sys.argv[1:] if arguments is None else arguments)
     try:
         status = COMMANDS[options.command](options)
@@ -164,6 +166,16 @@ def _stage(options: argparse.Namespace) -> Any:
 def _complain(error: object) -> int:
     print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
     return MISTAKE
+
+
+def _make_streams_sure() -> None:
+    """Let nothing that is printed fail over a stream that the caller closed or over a letter that it lacks."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))     # noqa: SIM115  until the end
+        elif isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _say_no_more() -> None:

@@ -126,3 +126,9 @@ def test_reset_brings_the_starting_pose_back() -> None:
     camera.reset()
     assert (camera.yaw, camera.pitch, camera.distance, tuple(camera.target), camera.field_of_view) == (
         10, 20, 3, (1, 2, 3), 40)
+
+
+def test_a_place_may_be_told_in_numpy_s_numbers() -> None:
+    pose = Orbit().moved({"yaw": np.float32(30.0), "distance": np.int64(3), "target": np.zeros(3)})
+    camera = OrbitCamera(pose)
+    assert (camera.yaw, camera.distance, list(camera.target)) == (30.0, 3.0, [0.0, 0.0, 0.0])

@@ -107,3 +107,22 @@ def test_a_description_holds_every_parameter(scene_pack: ScenePack) -> None:
     about = json.loads(json.dumps(Catalog([scene_pack(tile=packs.TILE)]).find("tile").describe()))
     assert (about["name"], about["description"]) == ("tile", "A tile of one shade.")
     assert [one["name"] for one in about["parameters"]] == ["shade", "height", "sides"]
+
+
+@pytest.mark.parametrize(("line", "message"), [
+    ("camera = None", "camera has to be an Orbit"),
+    ("camera = Orbit(distance=0)", "camera distance = 0 is not a number from 0.001 to 10000"),
+    ("camera = Orbit(yaw='left')", "camera yaw = left is not a number"),
+    ("camera = Orbit(field_of_view=180)", "camera field_of_view = 180 is not a number from 1 to 170"),
+    ("studio = None", "studio has to be a Studio"),
+    ("studio = Studio(radius=0)", "studio radius = 0 is not a number above 0"),
+    ("studio = Studio(center=(0, 0))", "studio center = (0, 0) is not three numbers"),
+    ("studio = Studio(backdrop=('#zz', '#000000'))", "studio backdrop = #zz is not a colour"),
+    ("studio = Studio(ground=float('nan'))", "studio ground = nan is neither a number nor None")])
+def test_a_set_or_a_pose_that_cannot_be_is_refused_at_once(scene_pack: ScenePack, line: str, message: str) -> None:
+    """Where it is written, not when it is first drawn: an edited scene would take the present one along."""
+    source = packs.TILE.replace("import Parameters", "import Orbit, Parameters")
+    source = source.replace("studio = Studio(ground=None)", line)
+    with pytest.raises(SceneError) as caught:
+        Catalog([scene_pack(tile=source)]).find("tile").load()
+    assert message in str(caught.value)

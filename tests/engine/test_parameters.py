@@ -326,3 +326,9 @@ def test_names_that_glsl_reserves_get_uniforms_of_their_own() -> None:
     uniforms = {formula_uniform("height", name) for name in names}
     assert len(uniforms) == len(names)
     assert not any("__" in uniform for uniform in uniforms)
+
+
+def test_an_interval_may_be_an_array() -> None:
+    params = Everything()
+    params.lifetime = np.array([0.5, 1.5])  # type: ignore[assignment]
+    assert params.lifetime == (0.5, 1.5)

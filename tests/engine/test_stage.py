@@ -15,8 +15,9 @@ from viewer.engine.camera import Orbit
 from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import GpuError
-from viewer.engine.scene import SceneError
+from viewer.engine.scene import SceneError, Studio
 from viewer.engine.stage import Stage
+from viewer.errors import DemoscopeError
 
 # A card that hovers over the floor where ``place`` says, so that its shadow can be followed.
 CARD = {"shaders/card/card.vert": """#version 330 core
@@ -415,3 +416,87 @@ def test_an_edited_scene_may_move_to_another_set(make_stage: MakeStage) -> None:
     pixels = stage.pixels()
     assert not np.array_equal(pixels, before)
     assert int(pixels[..., 0].min()) > int(pixels[..., 2].max())
+
+
+@pytest.mark.parametrize("mess", [
+    "context.wireframe = True", "context.polygon_offset = 5.0, 5.0", "context.fbo.viewport = 0, 0, 4, 4",
+    "context.scissor = 0, 0, 4, 4", "context.fbo.depth_mask = False", "context.cull_face = 'front_and_back'",
+    "context.enable_only(context.CULL_FACE | context.BLEND)", "self.aside.use()"])
+def test_what_a_scene_leaves_behind_ends_with_its_draw(make_stage: MakeStage, mess: str) -> None:
+    """Floor and backdrop are the same, the next frame too, and so is another stage's picture."""
+    aside = "        self.aside = gpu.framebuffer([gpu.texture((4, 4), 4)])\n        self.built_with"
+    source = packs.TILE.replace("studio = Studio(ground=None)", "studio = Studio()")
+    source = source.replace("        self.built_with", aside, 1)
+    tidy = make_stage(source.replace("self.array.render(vertices=3)", "pass"))
+    expected = tidy.pixels()
+    messy = make_stage(source.replace("self.array.render(vertices=3)", f"context = self.gpu.context; {mess}"))
+    assert np.array_equal(messy.pixels(), expected)
+    messy.set(shade=0.5)
+    assert np.array_equal(messy.pixels(), expected)
+    tidy.set(shade=0.5)
+    assert np.array_equal(tidy.pixels(), expected)
+
+
+@pytest.mark.parametrize("frame", [1.5, float("nan"), "3", None, 10**400])
+def test_a_frame_is_a_whole_number(walk: Stage, frame: object) -> None:
+    walk.seek(np.int64(2))
+    with pytest.raises(ParameterError, match=r"^frame = "):
+        walk.seek(frame)  # type: ignore[arg-type]
+    assert walk.frame == 2
+
+
+@pytest.mark.parametrize("size", [(32.5, 18), "32x18", (32,), 32, None])
+def test_a_size_is_two_whole_numbers(make_stage: MakeStage, size: object) -> None:
+    stage = make_stage()
+    with pytest.raises(GpuError, match="is not a width and a height"):
+        stage.resize(size)  # type: ignore[arg-type]
+    stage.resize(np.array([16, 9]))  # type: ignore[arg-type]
+    assert stage.size == (16, 9)
+
+
+def test_a_step_that_fails_is_still_to_be_made(make_stage: MakeStage) -> None:
+    """Playing on would leave it out, and the same frame would no longer be the same picture."""
+    stage = make_stage(packs.WALK, name="walk", params={"breaks_at": 3})
+    with pytest.raises(SceneError, match="stumbled"):
+        stage.seek(5)
+    assert stage.frame == 2
+
+
+def test_a_stage_that_was_released_says_so(make_stage: MakeStage) -> None:
+    stage = make_stage()
+    stage.release()
+    for use in (stage.render, stage.pixels, stage.geometry, stage.measure, stage.rebuild,
+                lambda: stage.resize((8, 8))):
+        with pytest.raises(DemoscopeError, match="has been released"):
+            use()
+
+
+def test_generated_text_that_cannot_be_made_undoes_the_change(make_stage: MakeStage) -> None:
+    source = packs.TILE.replace('"tile/draw.frag")', '"tile/draw.frag", generated={'
+                                '"generated/a.glsl": lambda: f"{1 / (params.height - 1)}"})')
+    stage = make_stage(source)
+    with pytest.raises(DemoscopeError, match=r"generated/a\.glsl: cannot be made: ZeroDivisionError"):
+        stage.set(height=1.0)
+    assert stage.params.height == 2.0
+    assert stage.refresh_shaders() is None
+
+
+def test_another_set_that_fails_leaves_the_present_one(make_stage: MakeStage) -> None:
+    broken = {"shaders/studio/ground.frag": "#version 330 core\nvoid main() { x }\n"}
+    stage = make_stage()
+    before = stage.pixels()
+    place = stage.entry.shaders.folders[0] / "studio" / "ground.frag"
+    place.parent.mkdir()
+    place.write_text(broken["shaders/studio/ground.frag"])
+    with pytest.raises(DemoscopeError, match=r"studio/ground\.frag:2"):
+        stage.painter.furnish(Studio(ground=-2.0))
+    place.unlink()
+    assert np.array_equal(stage.pixels(), before)
+
+
+@pytest.mark.parametrize("size", [(5, 1), (1, 5), (1, 1)])
+def test_pixels_are_the_caller_s_to_change(make_stage: MakeStage, size: tuple[int, int]) -> None:
+    """However low the picture is."""
+    picture = make_stage(size=size).pixels()
+    picture[...] = 0
+    assert picture.flags["C_CONTIGUOUS"]

@@ -117,7 +117,7 @@ MESSAGES = [
     ("{x}", "unknown character { at 1; parentheses are ( )", 1),
     ("x; y", "unknown character ; at 2; a formula is a single expression", 2),
     ("x && y", "unknown character & at 3; type and", 3),
-    ("x || y", "unknown character | at 3; type or", 3),
+    ("x || y", "unknown character | at 3; type abs(...) for a value without its sign, or or between conditions", 3),
     ("!x", "unknown character ! at 1; type not, or != to compare", 1),
     ("x ? 1 : 2", "unknown character ? at 3; a choice is written a if c else b", 3),
     ("x @ y", "unknown character @ at 3; operators are + - * / % ^", 3),

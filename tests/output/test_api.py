@@ -61,6 +61,7 @@ def test_params_stand_above_the_preset_and_camera_above_both(context: moderngl.C
     ({"preset": "nothing-like-it"}, "has no preset nothing-like-it"),
     ({"size": (0, 10)}, "a picture of 0x10 is outside"),
     ({"frame": -1}, "frame = -1 is before the first"), ({"packs": ["/nowhere"]}, "pack /nowhere has no folder scenes"),
+    ({"packs": "/nowhere"}, "pack /nowhere has no folder scenes"),
 ])
 def test_mistakes_are_one_family(context: moderngl.Context, arguments: dict[str, object], message: str) -> None:
     """A script may catch them all by ``viewer.DemoscopeError``; nothing is left on the GPU."""

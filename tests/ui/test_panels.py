@@ -357,6 +357,21 @@ def test_presets_are_saved_and_loaded(hand: Hand, pack: Path) -> None:
     assert hand.value("size") == 0.5
 
 
+def test_a_preset_is_replaced_from_the_keyboard(hand: Hand, pack: Path) -> None:
+    """Enter saves, and Enter once more says that it may take the other's place."""
+    for size, name in ((0.8, "large"), (0.9, "")):      # the second time the name is there already
+        hand.bench.change("size", {"size": size})
+        hand.click("\uf0c7##save")
+        hand.frames(4)
+        hand.type(name)
+        hand.key(Key.enter)
+        hand.frames(4)
+    path = pack / "mine" / "tile" / "large.toml"
+    assert "0.8" in path.read_text(), "it asks before it replaces"
+    hand.key(Key.enter)
+    assert "0.9" in path.read_text()
+
+
 def test_screenshots_tell_where_they_are(hand: Hand, pack: Path) -> None:
     from PIL import Image
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import time
+from typing import cast
+
 import numpy as np
 import pytest
 
 from viewer.engine.scene import Curve
+from viewer.engine.stage import Stage
+from viewer.ui import measurer
 from viewer.ui.history import History
 from viewer.ui.layout import View, arrange
 from viewer.ui.measurer import number_text, prepared, readout
@@ -81,3 +86,35 @@ def test_the_picture_has_the_larger_part() -> None:
     assert layout.picture.width > 450
     assert layout.picture.height > 600
     assert not layout.one_column
+
+
+class Numbers:
+    """A stage as far as measuring goes."""
+
+    def __init__(self) -> None:
+        self.params = self
+        self.revision = 0
+        self.measured = 0
+
+    @property
+    def scene_showing(self) -> int:
+        return self.revision
+
+    def measure(self) -> dict[str, float]:
+        self.measured += 1
+        time.sleep(0.02)
+        return {}
+
+
+def test_what_rests_is_measured_though_a_cursor_stays_in_the_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A formula that has been typed has its numbers beside it before the hand goes elsewhere."""
+    monkeypatch.setattr(measurer, "SHARE_OF_TIME", 1.0)
+    numbers = Numbers()
+    watch = measurer.Measurer(cast(Stage, numbers))
+    watch.run(dragging=True)
+    numbers.revision = 1
+    watch.run(dragging=True)
+    assert numbers.measured == 1
+    monkeypatch.setattr(measurer, "RESTED_SECONDS", 0.0)
+    watch.run(dragging=True)
+    assert numbers.measured == 2

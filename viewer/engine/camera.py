@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ DEGREES_PER_HEIGHT = 180.0
 STEEPEST_PITCH = 89.0
 POSE_LIMITS = {"yaw": (-1e6, 1e6), "pitch": (-STEEPEST_PITCH, STEEPEST_PITCH), "distance": (1e-3, 1e4),
                "target": (-1e4, 1e4)}
+LIMITS = {**POSE_LIMITS, "field_of_view": (1.0, 170.0)}
 
 
 class CameraError(DemoscopeError):
@@ -27,7 +29,8 @@ class CameraError(DemoscopeError):
 class Orbit:
     """A pose: turned by ``yaw`` about the vertical, raised by ``pitch``, ``distance`` from ``target``.
 
-    Angles and the vertical field of view in degrees. Yaw 0 looks along -z, yaw 90 along -x.
+    Angles and the vertical field of view in degrees. Yaw 0 looks along -z, yaw 90 along -x. Raises
+    CameraError for a place where no camera can stand.
     """
 
     yaw: float = 30.0
@@ -36,23 +39,26 @@ class Orbit:
     target: tuple[float, float, float] = (0.0, 0.0, 0.0)
     field_of_view: float = 35.0
 
-    def moved(self, changes: Mapping[str, Any]) -> Orbit:
-        """This pose with other ``yaw``, ``pitch``, ``distance`` or ``target``; raises CameraError for anything else."""
-        for name, value in changes.items():
-            if name not in POSE_LIMITS:
-                raise CameraError(f"camera has {name}, which is none of {', '.join(POSE_LIMITS)}")
-            low, high = POSE_LIMITS[name]
+    def __post_init__(self) -> None:
+        for name, (low, high) in LIMITS.items():
+            value = getattr(self, name)
             count = 3 if name == "target" else 1
             numbers = value if name == "target" else [value]
             if not _are_numbers(numbers, count) or not all(low <= number <= high for number in numbers):
                 wanted = "three numbers" if name == "target" else "a number"
                 raise CameraError(f"camera {name} = {value} is not {wanted} from {low:g} to {high:g}")
+
+    def moved(self, changes: Mapping[str, Any]) -> Orbit:
+        """This pose with other ``yaw``, ``pitch``, ``distance`` or ``target``; raises CameraError for anything else."""
+        for name in changes:
+            if name not in POSE_LIMITS:
+                raise CameraError(f"camera has {name}, which is none of {', '.join(POSE_LIMITS)}")
         return replace(self, **changes)
 
 
 def _are_numbers(values: Any, count: int) -> bool:
-    return (isinstance(values, (list, tuple)) and len(values) == count
-            and all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values))
+    return (isinstance(values, (list, tuple, np.ndarray)) and len(values) == count
+            and all(isinstance(value, Real) and not isinstance(value, bool) for value in values))
 
 
 class OrbitCamera:

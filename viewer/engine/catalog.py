@@ -11,8 +11,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from viewer.engine.camera import Orbit
 from viewer.engine.fields import nearest
-from viewer.engine.scene import Scene, SceneError
+from viewer.engine.params import Parameters
+from viewer.engine.scene import Scene, SceneError, Studio
 from viewer.engine.shaders import ShaderFolders
 
 ENTRY_POINTS = "demoscope.packs"
@@ -35,7 +37,13 @@ class SceneEntry:
                  if inspect.isclass(thing) and issubclass(thing, Scene) and thing.__module__ == module.__name__]
         if len(found) != 1:
             raise SceneError(f"{self.file}: one class derived from Scene is expected, not {len(found)}")
-        return found[0]
+        scene = found[0]
+        for name, kind, right in (("camera", "an Orbit", isinstance(scene.camera, Orbit)),
+                                  ("studio", "a Studio", isinstance(scene.studio, Studio)),
+                                  ("Params", "a class derived from Parameters", _is_parameters(scene.Params))):
+            if not right:
+                raise SceneError(f"{self.file}: {name} has to be {kind}")
+        return scene
 
     def describe(self) -> dict[str, Any]:
         """Name, one-line description and parameters, ready for JSON."""
@@ -53,6 +61,10 @@ class SceneEntry:
         except (Exception, SystemExit) as error:
             raise scene_error(self, "cannot be loaded", error) from error
         return module
+
+
+def _is_parameters(thing: object) -> bool:
+    return inspect.isclass(thing) and issubclass(thing, Parameters)
 
 
 def summary(scene: type[Scene]) -> str:
@@ -82,7 +94,8 @@ def builtin_pack() -> Path:
 class Catalog:
     """The scenes of the packs given, then the built-in one's, then those of installed packs."""
 
-    def __init__(self, packs: Iterable[str | Path] = ()) -> None:
+    def __init__(self, packs: str | Path | Iterable[str | Path] = ()) -> None:
+        packs = [packs] if isinstance(packs, (str, Path)) else packs
         self.packs = [_checked(Path(pack)) for pack in packs] + [builtin_pack()]
 
     def find(self, name: str) -> SceneEntry:

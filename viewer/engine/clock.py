@@ -2,10 +2,29 @@
 
 from __future__ import annotations
 
+from operator import index
+from typing import SupportsIndex
+
+from viewer.engine.fields import ParameterError
+
 FRAMES_PER_SECOND = 60
 FRAME_SECONDS = 1.0 / FRAMES_PER_SECOND
+LAST_FRAME = 10**9
 MOST_STEPS_AT_ONCE = 8
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+
+
+def checked_frame(frame: SupportsIndex) -> int:
+    """``frame`` as a whole number from 0 to LAST_FRAME; raises ParameterError."""
+    try:
+        number = index(frame)
+    except TypeError:
+        raise ParameterError(f"frame = {frame} is not a whole number") from None
+    if number < 0:
+        raise ParameterError(f"frame = {number} is before the first, which is 0")
+    if number > LAST_FRAME:
+        raise ParameterError(f"frame = {str(number)[:40]} is after the last, which is {LAST_FRAME}")
+    return int(number)
 
 
 class Clock:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from viewer.engine.fields import Field, ParameterError, T, Uniform
 
 
@@ -106,8 +108,8 @@ class Interval(Number[tuple[float, float]]):
         if isinstance(value, str):
             ends: Sequence[object] = value.split("..")
             ends = list(ends) * 2 if len(ends) == 1 else ends
-        elif isinstance(value, Sequence):
-            ends = value
+        elif isinstance(value, (Sequence, np.ndarray)) and np.ndim(value):
+            ends = list(value)
         else:
             ends = [value, value]
         if len(ends) != 2:

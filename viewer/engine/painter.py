@@ -15,6 +15,7 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.picture import Picture
 from viewer.engine.scene import Scene, Studio
 from viewer.engine.shaders import ShaderError, ShaderFolders
+from viewer.engine.state import plain_state
 from viewer.engine.studio import StudioSet
 
 
@@ -40,10 +41,13 @@ class Painter:
         self._cast_shadow(scene, frame, draw)
         self.set_moment(camera, frame)
         self.picture.begin()
-        self._plain_state()
+        plain_state(self.context)
         self.studio.shadow.bind()
-        draw()
-        self._plain_state()
+        try:
+            draw()
+        finally:
+            plain_state(self.context)
+        self.picture.go_on()
         self.studio.draw()
         self.picture.finish()
 
@@ -66,10 +70,16 @@ class Painter:
         self._picture_arena, self.picture = arena, picture
 
     def furnish(self, plan: Studio) -> None:
-        """Put up another set."""
+        """Put up another set, or if that fails keep the present one."""
         if plan != self.studio.plan:
+            arena = Gpu(self.context, self._set_arena.shaders)
+            try:
+                studio = StudioSet(arena, plan)
+            except BaseException:
+                arena.release()
+                raise
             self._set_arena.release()
-            self.studio = StudioSet(self._set_arena, plan)
+            self._set_arena, self.studio = arena, studio
             self._shadow_shows = None
 
     def refresh(self) -> ShaderError | None:
@@ -109,11 +119,3 @@ class Painter:
         self._block.write({**self.studio.frame_values(), **camera, "time": frame * FRAME_SECONDS,
                            "number": frame, "resolution": self.picture.size})
         self._block.bind()
-
-    def _plain_state(self) -> None:
-        self.context.enable_only(moderngl.DEPTH_TEST)
-        self.context.depth_func = "<"
-        self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self.context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
-        self.context.cull_face = "back"
-        self.context.front_face = "ccw"

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from operator import index
+from typing import Any
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.program import VertexArray
+from viewer.engine.state import whole
 
 MOST_SAMPLES = 16
 MOST_BYTES = 4 * 2**30
@@ -18,12 +22,21 @@ def most_samples(context: moderngl.Context) -> int:
     return min(context.max_samples, int(context.info.get("GL_MAX_COLOR_TEXTURE_SAMPLES", context.max_samples)))
 
 
+def checked_size(size: Any) -> tuple[int, int]:
+    """``size`` as two whole numbers; raises GpuError."""
+    try:
+        width, height = (index(extent) for extent in size)
+    except (TypeError, ValueError):
+        raise GpuError(f"size = {size} is not a width and a height in pixels such as (640, 360)") from None
+    return width, height
+
+
 class Picture:
     """Render targets of one size. ``texture`` is the finished picture, 8-bit sRGB, bottom row first."""
 
     def __init__(self, gpu: Gpu, size: tuple[int, int], samples: int) -> None:
         gpu.check_size(size, "a picture")
-        if not 0 <= samples <= MOST_SAMPLES:
+        if not isinstance(samples, (int, np.integer)) or not 0 <= samples <= MOST_SAMPLES:
             raise GpuError(f"samples = {samples} is outside 0 to {MOST_SAMPLES}")
         needed = size[0] * size[1] * (12 * max(1, samples) + 4)
         if needed > MOST_BYTES:
@@ -57,8 +70,12 @@ class Picture:
 
     def begin(self) -> None:
         """Make the linear target the one that is drawn into, and clear it."""
-        self._drawn.use()
+        self.go_on()
         self._drawn.clear(0.0, 0.0, 0.0, 1.0, depth=1.0)
+
+    def go_on(self) -> None:
+        """Make the whole linear target the one that is drawn into, whatever a scene bound or cut out meanwhile."""
+        whole(self._drawn)
 
     def finish(self) -> None:
         """Map the tones of each sample, average the samples and encode to sRGB, once."""
@@ -75,4 +92,4 @@ class Picture:
         """The finished picture, (height, width, 4), top row first."""
         width, height = self.size
         rows = np.frombuffer(self._finished.read(components=4), np.uint8).reshape(height, width, 4)
-        return np.ascontiguousarray(rows[::-1])
+        return rows[::-1].copy()

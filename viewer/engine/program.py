@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -65,7 +65,7 @@ class Program:
         self.error: ShaderError | None = None
         self.generation = 0
         self._stages = {"vertex_shader": vertex} | ({"fragment_shader": fragment} if fragment else {})
-        self._generated = generated
+        self._generated = {name: _careful(name, make) for name, make in generated.items()}
         self._own_uniforms: dict[str, Uniform] = {}
         self._variants: dict[object, Variant] = {}
         self._sources = self._flatten()
@@ -92,10 +92,11 @@ class Program:
 
     def refresh(self) -> ShaderError | None:
         """Link anew if a file or generated text changed; returns the error that stands, if any."""
-        if self._now() == self._stamp:
-            return self.error
-        self._stamp = ()        # a file that is missing may yet appear: look again next time
+        stamp, self._stamp = self._stamp, ()    # a file that is missing may yet appear: look again next time
         try:
+            if self._now() == stamp:
+                self._stamp = stamp
+                return self.error
             sources = self._flatten()
             self._watch(sources)
             if not self._same_text(sources):
@@ -160,6 +161,17 @@ class Program:
         label(linked, f"{self.name} {purpose}")
         units = {"u_shadow_near": SHADOW_NEAR_UNIT, "u_shadow_wide": SHADOW_WIDE_UNIT}
         return Variant(linked, units, {"Frame": FRAME_BINDING})
+
+
+def _careful(name: str, make: Callable[[], str]) -> Callable[[], str]:
+    """``make`` as the rest of a shader: whatever it raises is an error in the generated text ``name``."""
+    def made() -> str:
+        try:
+            return make()
+        except Exception as error:
+            raise ShaderError(name, 0, f"cannot be made: {type(error).__name__}: {error}") from error
+
+    return made
 
 
 def _mention_time(sources: Iterable[Source]) -> bool:

@@ -12,6 +12,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypeAlias
@@ -21,6 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from viewer.engine.camera import Orbit
 from viewer.engine.clock import FRAME_SECONDS
+from viewer.engine.color_field import Color
+from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
 from viewer.errors import DemoscopeError
@@ -49,6 +52,11 @@ class Curve:
     log_x: bool = False
     log_y: bool = False
 
+    def __post_init__(self) -> None:
+        lengths = {np.asarray(values, np.float64).size for values in (self.x, *self.series.values())}
+        if len(lengths) > 1:
+            raise ValueError(f"curve over {self.x_name}: axis and series differ in length")
+
     def lists(self) -> dict[str, list[float]]:
         """Axis and series by name, as lists of floats."""
         named = {self.x_name: self.x, **self.series}
@@ -64,6 +72,10 @@ class ColorScale:
     high: float
     unit: str = ""
 
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.low) or not math.isfinite(self.high):
+            raise ValueError(f"colour scale {self.title} has no finite ends")
+
 
 @dataclass(frozen=True)
 class Studio:
@@ -77,6 +89,46 @@ class Studio:
     radius: float = 1.5
     ground: float | None = -1.0
     backdrop: tuple[str, str] = ("#c9ced6", "#7f8b9c")
+
+    def __post_init__(self) -> None:
+        if np.shape(self.center) != (3,) or not np.isfinite(np.asarray(self.center, np.float64)).all():
+            raise SceneError(f"studio center = {self.center} is not three numbers")
+        if not 0.0 < self.radius < math.inf:
+            raise SceneError(f"studio radius = {self.radius} is not a number above 0")
+        if self.ground is not None and not math.isfinite(self.ground):
+            raise SceneError(f"studio ground = {self.ground} is neither a number nor None")
+        for color in self.backdrop:
+            try:
+                Color(color, "")
+            except ParameterError as error:
+                raise SceneError(f"studio backdrop = {color} {Color.ALLOWED}") from error
+        if len(self.backdrop) != 2:
+            raise SceneError(f"studio backdrop = {self.backdrop} is not two colours, low and high")
+
+
+def checked_geometry(geometry: Any) -> Geometry:
+    """What a scene's ``geometry`` gave, as arrays; raises TypeError for what is not numbers by name."""
+    arrays = {str(name): np.asarray(values) for name, values in (geometry or {}).items()}
+    for name, array in arrays.items():
+        if array.dtype.kind not in "biuf":
+            raise TypeError(f"{name} is not an array of numbers")
+    return arrays
+
+
+def checked_scale(scale: Any) -> ColorScale | None:
+    """What a scene's ``color_scale`` gave; raises TypeError for anything but a ColorScale or None."""
+    if scale is not None and not isinstance(scale, ColorScale):
+        raise TypeError("color_scale gives neither a ColorScale nor None")
+    return scale
+
+
+def checked_measurements(measurements: Any) -> Measurements:
+    """What a scene's ``measure`` gave; raises TypeError for what is neither a number nor a Curve."""
+    named = dict(measurements or {})
+    for name, value in named.items():
+        if not isinstance(value, Curve) and not (np.ndim(value) == 0 and np.asarray(value).dtype.kind in "biuf"):
+            raise TypeError(f"{name} is neither a number nor a Curve")
+    return named
 
 
 class Scene:

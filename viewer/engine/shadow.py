@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from viewer.engine.frame import SHADOW_NEAR_UNIT, SHADOW_WIDE_UNIT
 from viewer.engine.gpu import Gpu
 from viewer.engine.matrices import Matrix
+from viewer.engine.state import plain_state, whole
 
 DEPTH_SIZE = 512
 NEAR_SIZE = 256
@@ -41,15 +42,16 @@ class ShadowMap:
 
     def cast(self, draw: Callable[[], None]) -> None:
         """Fill the maps with what ``draw`` draws from the light's place."""
-        self._casting.use()
+        whole(self._casting)
         self._casting.clear(depth=1.0)
-        self.gpu.context.enable_only(moderngl.DEPTH_TEST)
+        plain_state(self.gpu.context)
         # What stands before the light's near plane casts its shadow all the same.
         self.gpu.context.depth_clamp_range = (0.0, 1.0)
         try:
             draw()
         finally:
             self.gpu.context.depth_clamp_range = None
+            plain_state(self.gpu.context)
         self._blur_all()
 
     def bind(self) -> None:

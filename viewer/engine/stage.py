@@ -11,14 +11,22 @@ from numpy.typing import NDArray
 
 from viewer.engine.camera import OrbitCamera
 from viewer.engine.catalog import SceneEntry, scene_error
-from viewer.engine.clock import FRAME_SECONDS, Clock
+from viewer.engine.clock import FRAME_SECONDS, Clock, checked_frame
 from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
 from viewer.engine.painter import Painter
 from viewer.engine.params import Parameters
-from viewer.engine.picture import Picture
+from viewer.engine.picture import Picture, checked_size
 from viewer.engine.presets import Preset
-from viewer.engine.scene import Geometry, Measurements, Scene
+from viewer.engine.scene import (
+    ColorScale,
+    Geometry,
+    Measurements,
+    Scene,
+    checked_geometry,
+    checked_measurements,
+    checked_scale,
+)
 from viewer.engine.shaders import ShaderError
 from viewer.errors import DemoscopeError
 
@@ -37,12 +45,13 @@ class Stage:
                  samples: int = 4, params: Mapping[str, object] | None = None, seed: int = 0) -> None:
         self.context = context
         self.entry = entry
+        self._released = False
         self.clock = Clock()
         self.scene_class = entry.load()
         self.params: Parameters = self._guard("cannot take its parameters",
                                               lambda: self.scene_class.Params(params, seed=seed))
         self.camera = OrbitCamera(self.scene_class.camera)
-        self.painter = Painter(context, entry.shaders, self.scene_class.studio, size, samples)
+        self.painter = Painter(context, entry.shaders, self.scene_class.studio, checked_size(size), samples)
         try:
             self.scene = self._built(self.scene_class, self.params)
         except BaseException:
@@ -99,6 +108,8 @@ class Stage:
 
     def resize(self, size: tuple[int, int], samples: int | None = None) -> None:
         """Draw pictures of another size from now on; raises GpuError beyond the driver's limits."""
+        self._check_held()
+        size = checked_size(size)
         samples = self.picture.samples if samples is None else samples
         if (size, samples) != (self.size, self.picture.samples):
             self.painter.resize(size, samples)
@@ -107,8 +118,7 @@ class Stage:
 
     def seek(self, frame: int) -> None:
         """Go to ``frame``: exactly where playing from 0 gets, forwards or backwards."""
-        if frame < 0:
-            raise ParameterError(f"frame = {frame} is before the first, which is 0")
+        frame = checked_frame(frame)
         if self.scene.simulates and frame < self.clock.frame:
             self._exchange(self.scene_class, self.params, frame)
         else:
@@ -129,6 +139,7 @@ class Stage:
 
     def render(self) -> None:
         """Draw the current frame into the picture."""
+        self._check_held()
         self._share_parameters()
         self.painter.paint(self.scene, self.camera, self.clock.frame,
                            lambda: self._guard("failed in draw", self.scene.draw))
@@ -140,11 +151,15 @@ class Stage:
 
     def geometry(self) -> Geometry:
         """What the GPU made for the current frame, by name: see the scene."""
-        return self._off_screen("failed in geometry", self.scene.geometry)
+        return self._off_screen("failed in geometry", lambda: checked_geometry(self.scene.geometry()))
 
     def measure(self) -> Measurements:
         """The scene's numbers and curves at the current frame."""
-        return self._off_screen("failed in measure", self.scene.measure)
+        return self._off_screen("failed in measure", lambda: checked_measurements(self.scene.measure()))
+
+    def color_scale(self) -> ColorScale | None:
+        """What the picture's colours stand for, if they stand for a number."""
+        return self._guard("failed in color_scale", lambda: checked_scale(self.scene.color_scale()))
 
     # Life
 
@@ -171,7 +186,8 @@ class Stage:
         return self.scene.gpu.refresh() or self.painter.refresh()
 
     def release(self) -> None:
-        """Free everything on the GPU."""
+        """Free everything on the GPU; nothing can be drawn after that."""
+        self._released = True
         self.scene.gpu.release()
         self.painter.release()
 
@@ -202,11 +218,16 @@ class Stage:
             return work()
         except DemoscopeError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise scene_error(self.entry, doing, error) from error
+
+    def _check_held(self) -> None:
+        if self._released:
+            raise DemoscopeError(f"the stage of {self.entry.name} has been released; use it inside its block")
 
     def _built(self, scene_class: type[Scene], params: Parameters) -> Scene:
         """A new scene in an arena of its own; the arena is freed again if the scene fails to build."""
+        self._check_held()
         arena = Gpu(self.context, self.entry.shaders)
         arena.share(params)
         self.painter.set_moment(self.camera, 0)
@@ -241,10 +262,16 @@ class Stage:
         self.scene.stand_at(frame)
 
     def _simulate_one(self) -> None:
-        self._go_to(self.clock.frame + 1)
-        self._off_screen("failed in update", lambda: self.scene.update(FRAME_SECONDS))
+        before = self.clock.frame
+        self._go_to(before + 1)
+        try:
+            self._off_screen("failed in update", lambda: self.scene.update(FRAME_SECONDS))
+        except BaseException:
+            self._go_to(before)     # a step that failed is one still to be made
+            raise
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
+        self._check_held()
         self._share_parameters()
         self.painter.set_moment(self.camera, self.clock.frame)
         self.picture.use()

@@ -73,7 +73,7 @@ CHARACTER_HINTS = {
     "\u03c4": "type tau",
     "\u221a": "type sqrt(...)",
     "&": "type and",
-    "|": "type or",
+    "|": "type abs(...) for a value without its sign, or or between conditions",
     "!": "type not, or != to compare",
     "[": "a formula has no indexing; parentheses are ( )",
     "]": "a formula has no indexing; parentheses are ( )",

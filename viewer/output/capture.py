@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from viewer.engine.clock import LAST_FRAME
 from viewer.engine.fields import ParameterError
 from viewer.engine.stage import Stage
 from viewer.whole_file import whole_file
 
 Pixels = NDArray[np.uint8]
 MOST_FRAMES = 1_000_000
-LAST_FRAME = 10**9
 FRAMES_WORTH_A_BAR = 10
 
 

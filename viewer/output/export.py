@@ -34,7 +34,7 @@ def export(geometry: Geometry, path: Path) -> None:
         with whole_file(path) as temporary, temporary.open("wb") as stream:
             np.savez(stream, **geometry)  # type: ignore[arg-type]
         return
-    if "triangles" not in geometry:
+    if not {"vertices", "triangles"} <= set(geometry):
         raise ExportError(f"{path}: this scene has {', '.join(geometry)} and no triangles; export it as .npz")
     _write_mesh(geometry, path, kind[1:])
 
@@ -42,7 +42,12 @@ def export(geometry: Geometry, path: Path) -> None:
 def _write_mesh(geometry: Geometry, path: Path, kind: str) -> None:
     import trimesh
 
-    mesh = trimesh.Trimesh(geometry["vertices"], geometry["triangles"], process=False,
+    vertices, triangles = geometry["vertices"], geometry["triangles"]
+    if vertices.shape[1:] != (3,) or triangles.shape[1:] != (3,) or not triangles.size:
+        raise ExportError(f"{path}: this scene's vertices and triangles are not rows of three")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise ExportError(f"{path}: this scene's triangles name vertices that it has not")
+    mesh = trimesh.Trimesh(vertices, triangles, process=False,
                            vertex_normals=geometry.get("normals"))
     options = {"ply": {"vertex_normal": "normals" in geometry}, "obj": {"include_normals": "normals" in geometry},
                "stl": {}}[kind]

@@ -34,7 +34,8 @@ def shared_context() -> moderngl.Context:
 @contextmanager
 def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
              params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
-             camera: Orbit | Mapping[str, Any] | None = None, packs: Iterable[str | Path] = ()) -> Iterator[Stage]:
+             camera: Orbit | Mapping[str, Any] | None = None,
+             packs: str | Path | Iterable[str | Path] = ()) -> Iterator[Stage]:
     """A stage with no window: set, seek, then take pixels, geometry or measurements.
 
     ``preset`` comes first, then ``params``, whose values are Python values or text. ``camera`` is a
@@ -56,7 +57,8 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
 
 def render(scene: str, frame: int = 0, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int = 4,
            params: Mapping[str, object] | None = None, preset: str | Path | None = None, seed: int = 0,
-           camera: Orbit | Mapping[str, Any] | None = None, packs: Iterable[str | Path] = ()) -> NDArray[np.uint8]:
+           camera: Orbit | Mapping[str, Any] | None = None,
+           packs: str | Path | Iterable[str | Path] = ()) -> NDArray[np.uint8]:
     """One picture of a scene: uint8 (height, width, 4), top row first."""
     with headless(scene, size=size, samples=samples, params=params, preset=preset, seed=seed, camera=camera,
                   packs=packs) as stage:

@@ -33,6 +33,8 @@ class HeadlessPanels:
         try:
             for _ in range(SETTLING_FRAMES):
                 self.bench.draw(FRAME_SECONDS, surface)
+            if self.bench.live and self.bench.live.failure:
+                raise self.bench.live.failure
             return surface_pixels(surface)
         finally:
             self.stage.resize(size)

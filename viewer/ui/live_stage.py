@@ -55,6 +55,7 @@ class LiveStage:
         self.cpu_milliseconds = 0.0
         self.gpu_milliseconds: float | None = None
         self._failure: Problem | None = None
+        self._error: Exception | None = None
         self._failed_doing, self._failed_with = "", -1
         self._shader_problem: Problem | None = None
         self._scene_problem: Problem | None = None
@@ -69,6 +70,11 @@ class LiveStage:
     def problem(self) -> Problem | None:
         """What the banner says, the root cause first."""
         return self._scene_problem or self._shader_problem or self._failure
+
+    @property
+    def failure(self) -> Exception | None:
+        """What the scene raised, as long as that has not gone well since."""
+        return self._error if self._failure else None
 
     @property
     def shader_error(self) -> ShaderError | None:
@@ -91,8 +97,7 @@ class LiveStage:
             if work() != 0 and self._failed_doing == doing:     # 0: there was no frame to play
                 self._failure = None
         except Exception as error:
-            self._failure, self._failed_doing = problem_of(error, self.stage.entry), doing
-            self._failed_with = self.stage.params.revision
+            self._fail(doing, error)
             self.stage.clock.playing = False
 
     def watch(self) -> None:
@@ -133,14 +138,21 @@ class LiveStage:
     def color_scale(self) -> ColorScale | None:
         """What the picture's colours stand for, if they stand for a number."""
         try:
-            return self.stage.scene.color_scale()
+            scale = self.stage.color_scale()
         except Exception as error:
-            self._failure, self._failed_doing = problem_of(error, self.stage.entry), "colour scale"
+            self._fail("colour scale", error)
             return None
+        if self._failed_doing == "colour scale":
+            self._failure = None
+        return scale
 
     def release(self) -> None:
         """Free the stage."""
         self.stage.release()
+
+    def _fail(self, doing: str, error: Exception) -> None:
+        self._failure, self._failed_doing, self._error = problem_of(error, self.stage.entry), doing, error
+        self._failed_with = self.stage.params.revision
 
     def _timed_render(self) -> None:
         with self._query:

@@ -14,6 +14,7 @@ from viewer.ui.guard import one_line
 
 SHARE_OF_TIME = 0.1
 QUICK_SECONDS = 0.01        # a measure that takes no longer goes along with a drag
+RESTED_SECONDS = 0.4        # a slider held still or a text left alone for so long has come to rest
 MOST_POINTS = 1000
 UNITS = {"deg": "°", "ms": " ms", "percent": " %", "seconds": " s", "px": " px"}
 
@@ -46,14 +47,18 @@ class Measurer:
         self._measured: object = None
         self._cost = 0.0
         self._not_before = 0.0
+        self._revision, self._changed_at = -1, 0.0
 
     def run(self, *, dragging: bool) -> None:
-        """Measure if something changed, if it is time, and if no hand is on a slider meanwhile."""
+        """Measure if something changed, if it is time, and if no hand is moving a slider or typing meanwhile."""
         state = self.stage.scene_showing
         if state == self._measured:
             return
         now = time.perf_counter()
-        if self._patient and (now < self._not_before or (dragging and self._cost > QUICK_SECONDS)):
+        if self.stage.params.revision != self._revision:
+            self._revision, self._changed_at = self.stage.params.revision, now
+        moving = dragging and now - self._changed_at < RESTED_SECONDS
+        if self._patient and (now < self._not_before or (moving and self._cost > QUICK_SECONDS)):
             return
         self._measured = state
         try:

@@ -29,6 +29,7 @@ class PresetPanel:
         self._name = ""
         self._replacing = ""
         self._error = ""
+        self._asking = False
 
     def forget(self) -> None:
         """Another stage is on."""
@@ -67,8 +68,9 @@ class PresetPanel:
     def _dialog(self) -> None:
         if not imgui.begin_popup(POPUP):
             return
-        if imgui.is_window_appearing():
-            imgui.set_keyboard_focus_here()
+        if imgui.is_window_appearing() or self._asking:
+            imgui.set_keyboard_focus_here()     # so that Enter answers
+            self._asking = False
         imgui.set_next_item_width(14.0 * imgui.get_font_size())
         entered, self._name = imgui.input_text_with_hint(
             "##name", "Name of the preset", self._name, imgui.InputTextFlags_.enter_returns_true)
@@ -88,7 +90,7 @@ class PresetPanel:
         self._read()
         stem = self._name.strip().replace(" ", "-").lower()
         if any(preset.name == stem for preset in self._presets) and self._replacing != self._name:
-            self._replacing = self._name
+            self._replacing, self._asking = self._name, True
             return
         self._replacing = self._error = ""
         try:

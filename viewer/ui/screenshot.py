@@ -27,7 +27,7 @@ def surface_pixels(surface: Surface) -> NDArray[np.uint8]:
     width, height = (round(extent * ratio) for extent, ratio in zip(surface.size, surface.pixel_ratio, strict=True))
     data = surface.target.read(viewport=(0, 0, width, height), components=4, alignment=1)
     rows = np.frombuffer(data, np.uint8).reshape(height, width, 4)
-    pixels = np.ascontiguousarray(rows[::-1])
+    pixels = rows[::-1].copy()
     pixels[..., 3] = 255
     return pixels
 
