@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,11 +28,6 @@ from viewer import (
 from viewer.kit import mesh
 from viewer.kit.surface_normal import angles_to_nearest, normal_candidates
 
-TESSELLATIONS = {
-    "uv": lambda level: mesh.uv_sphere(max(2, 3 * 2**level // 2), 3 * 2**level),
-    "cube": lambda level: mesh.cube_sphere(2**level),
-    "ico": lambda level: mesh.ico_sphere(level),
-}
 EPSILONS = np.logspace(-7, 0, 29)
 PROBES = 4096
 BATCH = 16384       # vertices measured at once: as many as stay in the processor's cache
@@ -79,7 +76,7 @@ class RipplingSphere(Scene):
     def __init__(self, gpu: Gpu, params: Params) -> None:
         self.gpu = gpu
         self.params = params
-        self.vertices, self.triangles = TESSELLATIONS[params.tessellation](params.subdivision)
+        self.vertices, self.triangles = tessellated(params.tessellation, params.subdivision)
         include = {"generated/displacement.glsl": lambda: formula_include(params, "displacement")}
 
         surface = gpu.program("rippling_sphere/surface.vert", "rippling_sphere/surface.frag", generated=include)
@@ -116,7 +113,7 @@ class RipplingSphere(Scene):
         points, batches = self.vertices.astype("f4"), range(0, len(normals), BATCH)
         error = np.concatenate([angles_to_nearest(normals[start:start + BATCH],
                                                   self.true_normals(points[start:start + BATCH])) for start in batches])
-        area = mesh.vertex_areas(self.vertices, self.triangles)
+        area = areas(self.params.tessellation, self.params.subdivision)
         return {
             "vertices": len(self.vertices),
             "triangles": len(self.triangles),
@@ -135,7 +132,7 @@ class RipplingSphere(Scene):
             for scheme, mean in means.items():
                 mean.append(float(angles_to_nearest(captured[f"v_{scheme}"], truth).mean()))
         return Curve("epsilon", EPSILONS, means, x_label="epsilon (radii)", y_label="mean error (degrees)",
-                     log_x=True, log_y=True)
+                     log_x=True, log_y=True, now=self.params.epsilon)
 
     def true_normals(self, points: NDArray[np.float32]) -> NDArray[np.float64]:
         """The reference: differences of the formula's values in double precision."""
@@ -152,6 +149,20 @@ class RipplingSphere(Scene):
         way = np.array([1.0, 0.0, 0.0]) if self.params.direction == "x" else points
         rippled: NDArray[np.float64] = points + height[:, None] * way
         return rippled
+
+
+@lru_cache(maxsize=2)
+def tessellated(kind: str, level: int) -> mesh.Mesh:
+    """The unit sphere's vertices and triangles; each level has four times as many as the one before."""
+    if kind == "uv":
+        return mesh.uv_sphere(max(2, 3 * 2**level // 2), 3 * 2**level)
+    return mesh.cube_sphere(2**level) if kind == "cube" else mesh.ico_sphere(level)
+
+
+@lru_cache(maxsize=2)
+def areas(kind: str, level: int) -> NDArray[np.float64]:
+    """The share of the undisplaced sphere that each vertex stands for."""
+    return mesh.vertex_areas(*tessellated(kind, level))
 
 
 def needle_corners() -> NDArray[np.float32]:

@@ -22,6 +22,7 @@ from viewer.options import MISTAKE, parse
 
 INTERRUPTED = 130    # as shells count: 128 and the signal's number
 READER_GONE = 141
+LONGEST_LINE = 600
 PICTURE_FOLDER = Path("captures")
 
 
@@ -164,7 +165,8 @@ def _stage(options: argparse.Namespace) -> Any:
 
 
 def _complain(error: object) -> int:
-    print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+    line = " ".join(str(error).split())
+    print(f"error: {line if len(line) <= LONGEST_LINE else line[:LONGEST_LINE - 3] + '...'}", file=sys.stderr)
     return MISTAKE
 
 

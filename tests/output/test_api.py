@@ -131,3 +131,14 @@ def test_the_kit_needs_no_opengl() -> None:
     code += "".join(f"import viewer.kit.{name}\n" for name in modules if name != "__init__")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_preset_s_bad_value_names_the_file(tmp_path: Path) -> None:
+    """Not so a bad value given beside the preset."""
+    path = tmp_path / "mine.toml"
+    path.write_text("[parameters]\namplitud = 0.1\n")
+    with pytest.raises(viewer.DemoscopeError, match=r"mine\.toml: unknown parameter amplitud"):
+        viewer.render("rippling_sphere", size=(8, 8), preset=path)
+    path.write_text("[parameters]\namplitude = 0.1\n")
+    with pytest.raises(viewer.ParameterError, match=r"^amplitude = 9 is outside 0 to 0\.5$"):
+        viewer.render("rippling_sphere", size=(8, 8), preset=path, params={"amplitude": 9})

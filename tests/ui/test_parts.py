@@ -118,3 +118,11 @@ def test_what_rests_is_measured_though_a_cursor_stays_in_the_text(monkeypatch: p
     monkeypatch.setattr(measurer, "RESTED_SECONDS", 0.0)
     watch.run(dragging=True)
     assert numbers.measured == 2
+
+
+def test_an_angle_below_rounding_is_said_to_be_that() -> None:
+    """An audience reads "less than", not an exponent; counts and larger angles stay as they are."""
+    assert readout("normal_error_mean_deg", 2.2e-6) == ("normal error mean", "< 0.001°")
+    assert readout("normal_error_mean_deg", 0.0) == ("normal error mean", "0°")
+    assert readout("normal_error_mean_deg", 6.4475) == ("normal error mean", "6.447°")
+    assert readout("share", 2.2e-6) == ("share", "2.2e-6")

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from viewer.engine.camera import CameraError, Orbit
-from viewer.engine.fields import nearest
+from viewer.engine.fields import ParameterError, nearest
+from viewer.engine.params import Parameters
 from viewer.errors import DemoscopeError
 from viewer.whole_file import whole_file
 
@@ -39,6 +40,13 @@ class Preset:
     description: str
     values: Mapping[str, Any]
     camera: Mapping[str, Any]
+
+    def check(self, params: type[Parameters]) -> None:
+        """Raise PresetError, naming the file, if a scene with these parameters does not take the values."""
+        try:
+            params(self.values)
+        except ParameterError as error:
+            raise PresetError(f"preset {self.path}: {error}") from error
 
 
 def user_folder(scene: str) -> Path:

@@ -41,7 +41,7 @@ class Curve:
     """One or more series over a common axis, for a plot and for JSON.
 
     ``x`` (n,) is named ``x_name``; every array in ``series`` is (n,). ``log_x`` and ``log_y`` ask for
-    logarithmic axes; labels carry the units.
+    logarithmic axes; labels carry the units. ``now`` marks where on the axis the parameters stand.
     """
 
     x_name: str
@@ -51,6 +51,7 @@ class Curve:
     y_label: str = ""
     log_x: bool = False
     log_y: bool = False
+    now: float | None = None
 
     def __post_init__(self) -> None:
         lengths = {np.asarray(values, np.float64).size for values in (self.x, *self.series.values())}

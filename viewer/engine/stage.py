@@ -99,10 +99,8 @@ class Stage:
 
     def apply_preset(self, preset: Preset) -> None:
         """Take over a preset: its values, the defaults for what it leaves out, and its camera if it has one."""
-        try:
-            self.update_params(self.params.completed(preset.values))
-        except ParameterError as error:
-            raise ParameterError(f"preset {preset.name}: {error}") from error
+        preset.check(self.scene_class.Params)
+        self.update_params(self.params.completed(preset.values))
         if preset.camera:
             self.camera.stand(preset.camera)
 

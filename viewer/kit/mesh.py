@@ -104,8 +104,11 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 def vertex_areas(vertices: Vertices, triangles: Triangles) -> NDArray[np.float64]:
     """The area that each vertex stands for: a third of the triangles around it; (n,)."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return np.asarray(np.bincount(triangles.ravel(), np.repeat(area / 3.0, 3), minlength=len(vertices)), np.float64)
+    one, other = b - a, c - a
+    lengths = np.einsum("ij,ij->i", one, one) * np.einsum("ij,ij->i", other, other)
+    area = 0.5 * np.sqrt(np.maximum(lengths - np.einsum("ij,ij->i", one, other) ** 2, 0.0))    # Lagrange's identity
+    shares = [np.bincount(triangles[:, corner], area / 3.0, len(vertices)) for corner in range(3)]
+    return np.asarray(shares[0] + shares[1] + shares[2], np.float64)
 
 
 def fibonacci_sphere(count: int) -> Vertices:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from viewer.engine.camera import Orbit
 from viewer.engine.catalog import Catalog
 from viewer.engine.context import open_headless
+from viewer.engine.fields import ParameterError
 from viewer.engine.presets import load_preset
 from viewer.engine.stage import DEFAULT_SIZE, Stage
 
@@ -45,7 +46,12 @@ def headless(scene: str, *, size: tuple[int, int] = DEFAULT_SIZE, samples: int =
     entry = Catalog(packs).find(scene)
     chosen = load_preset(entry, preset) if preset else None
     values = {**(chosen.values if chosen else {}), **(params or {})}
-    stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
+    try:
+        stage = Stage(shared_context(), entry, size=size, samples=samples, params=values, seed=seed)
+    except ParameterError:
+        if chosen:
+            chosen.check(entry.load().Params)
+        raise
     try:
         place = camera or (chosen.camera if chosen else None)
         if place:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from imgui_bundle import imgui, implot
 
 from viewer.ui import theme
@@ -19,6 +20,7 @@ PLOT_FLAGS: int = (implot.Flags_.no_menus | implot.Flags_.no_box_select | implot
                    | implot.Flags_.no_mouse_text)
 AXIS_FLAGS: int = implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight
 LEGEND_FLAGS: int = implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_buttons
+NOW_COLOR = imgui.ImVec4(*theme.rgb("#e8eaed", 0.7))
 SERIES_COLORS = [imgui.ImVec4(*color) for color in theme.SERIES]
 
 
@@ -73,6 +75,11 @@ class MeasurementPanel:
                 spec.line_color = SERIES_COLORS[index % len(SERIES_COLORS)]
                 spec.line_weight = 0.12 * imgui.get_font_size()
                 implot.plot_line(name, x, y, spec)
+            if plot.curve.now is not None:
+                spec = implot.Spec()
+                spec.line_color = NOW_COLOR
+                spec.line_weight = 0.12 * imgui.get_font_size()
+                implot.plot_inf_lines("now", np.array([plot.curve.now]), spec)
         finally:
             implot.end_plot()
 

@@ -16,6 +16,7 @@ SHARE_OF_TIME = 0.1
 QUICK_SECONDS = 0.01        # a measure that takes no longer goes along with a drag
 RESTED_SECONDS = 0.4        # a slider held still or a text left alone for so long has come to rest
 MOST_POINTS = 1000
+ANGLE_DIGITS = 0.001        # degrees; below it single precision has its say
 UNITS = {"deg": "°", "ms": " ms", "percent": " %", "seconds": " s", "px": " px"}
 
 
@@ -81,12 +82,17 @@ def readout(name: str, value: float) -> tuple[str, str]:
     """``normal_error_mean_deg`` and 6.4512 as "normal error mean" and "6.451°"."""
     stem, _, suffix = name.rpartition("_")
     unit = UNITS.get(suffix, "") if stem else ""
-    return (stem if unit else name).replace("_", " "), number_text(value) + unit
+    return (stem if unit else name).replace("_", " "), number_text(value, ANGLE_DIGITS if unit == "°" else 0.0) + unit
 
 
-def number_text(value: float) -> str:
-    """A number short enough to read aloud: whole ones in groups of three, others to four digits."""
+def number_text(value: float, least: float = 0.0) -> str:
+    """A number short enough to read aloud: whole ones in groups of three, others to four digits.
+
+    What is smaller than ``least`` says only that.
+    """
     number = float(value)
+    if 0.0 < abs(number) < least:
+        return f"< {least:g}"
     if not np.isfinite(number):
         return str(number)
     if number == round(number) and abs(number) < 1e12:
