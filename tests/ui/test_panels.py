@@ -75,8 +75,9 @@ def test_a_wrong_formula_keeps_the_last_good_one(hand: Hand) -> None:
     hand.click("formula")
     hand.key(Key.mod_ctrl, Key.a)
     hand.type("bump*x")
+    assert hand.value("height").text == "size*x", "the keys have not rested yet"
+    hand.frames(12)
     assert hand.value("height").text == "bump*x"
-    hand.frames(2)
     assert "bump" in hand.places, "a name that nobody declared becomes a slider"
     hand.type("+*")
     draft = hand.bench.panels.parameters._typed._drafts["height"]
@@ -87,13 +88,23 @@ def test_a_wrong_formula_keeps_the_last_good_one(hand: Hand) -> None:
     hand.key(Key.backspace)
     hand.key(Key.backspace)
     assert not draft.error
+    hand.frames(12)
     assert hand.value("height").text == "bump*x"
+
+
+def test_a_formula_is_in_force_as_soon_as_its_input_is_left(hand: Hand) -> None:
+    hand.click("formula")
+    hand.key(Key.end)
+    hand.type("*3")
+    hand.click(PICTURE)
+    assert hand.value("height").text == "size*x*3"
 
 
 def test_a_word_typed_into_a_formula_is_undone_as_one(hand: Hand) -> None:
     hand.click("formula")
     hand.key(Key.end)
     hand.type("*1.25")
+    hand.frames(12)
     assert hand.value("height").text == "size*x*1.25"
     hand.click(PICTURE)
     hand.key(Key.left_ctrl, Key.mod_ctrl, Key.z)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui, portable_file_dialogs
 
-from viewer.engine.fields import Field
+from viewer.engine.fields import Field, ParameterError
 from viewer.engine.file_field import File
 from viewer.engine.formula_field import FormulaField
 from viewer.kit.formula import FormulaError
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 FORMULA_LINES = (2, 5)     # as many as the text takes, within these
+PAUSE_SECONDS = 0.12       # between keys, after which a formula is compiled: a driver may take as long
 
 
 @dataclass
@@ -31,6 +32,7 @@ class Draft:
     stored: str
     error: str = ""
     position: int | None = None
+    due: float | None = None
 
 
 class TypedFields:
@@ -84,7 +86,19 @@ class TypedFields:
             imgui.pop_style_color()
         imgui.pop_font()
         if changed:
+            self._typed(field, draft, text)
+        if draft.due is not None and (imgui.get_time() >= draft.due or not imgui.is_item_active()):
+            self._try(field, draft, draft.text)
+
+    def _typed(self, field: FormulaField, draft: Draft, text: str) -> None:
+        """Say at once what is wrong with a formula; one that is right is put in force when the keys rest."""
+        try:
+            field.parse(text)
+        except ParameterError:
             self._try(field, draft, text)
+            return
+        draft.text, draft.error, draft.position = text, "", None
+        draft.due = imgui.get_time() + PAUSE_SECONDS
 
     def _draw_file(self, field: File, draft: Draft, width: float) -> None:
         browse = 1.9 * imgui.get_font_size() if dialogs_exist() else 0.0
@@ -110,7 +124,7 @@ class TypedFields:
 
     def _try(self, field: Field[Any], draft: Draft, text: str) -> None:
         """Put ``text`` in force, or keep it beside what is wrong with it."""
-        draft.text = text
+        draft.text, draft.due = text, None
         error = self.bench.change(field.name, {field.name: text})
         if error is None:
             assert self.bench.stage
