@@ -12,8 +12,10 @@ from viewer.engine.scene import Curve
 from viewer.engine.stage import Stage
 from viewer.ui import measurer
 from viewer.ui.history import History
+from viewer.ui.imgui_session import Surface
 from viewer.ui.layout import View, arrange
 from viewer.ui.measurer import number_text, prepared, readout
+from viewer.ui.pace import Pace
 from viewer.ui.typed_fields import excerpt
 
 
@@ -126,3 +128,15 @@ def test_an_angle_below_rounding_is_said_to_be_that() -> None:
     assert readout("normal_error_mean_deg", 0.0) == ("normal error mean", "0°")
     assert readout("normal_error_mean_deg", 6.4475) == ("normal error mean", "6.447°")
     assert readout("share", 2.2e-6) == ("share", "2.2e-6")
+
+
+def test_panels_are_built_under_a_hand_and_else_as_often_as_one_can_read() -> None:
+    """At 60 frames a second: every frame for a while after an event, then one in three or four."""
+    surface = Surface(None, (640, 360))
+    pace = Pace()
+    frames = [pace.due(1 / 60, surface, touched=number == 0) for number in range(120)]
+    assert all(frames[:24])
+    assert 14 <= sum(map(bool, frames[60:])) <= 21
+    assert sum(frames) == pytest.approx(2.0, abs=0.06), "no time is lost between builds"
+    resized = Surface(None, (800, 600))
+    assert pace.due(1 / 60, resized, touched=False), "another size is built at once"

@@ -202,7 +202,8 @@ class Workbench:
         surface.target.clear(0.0, 0.0, 0.0, 1.0)
         started = cpu_seconds()
         self.session.paint(surface.target)
-        self.pace.spent(building + cpu_seconds() - started)
+        if building is not None:
+            self.pace.spent(building + cpu_seconds() - started)
         self.panels.performance.tick()
         if self._screenshot_due:
             self._screenshot_due = False
@@ -222,16 +223,23 @@ class Workbench:
 
     # Inside
 
-    def _build_panels(self, seconds: float, surface: Surface) -> float:
-        """Build the panels if that is due; returns the CPU seconds that it took."""
+    def _build_panels(self, seconds: float, surface: Surface) -> float | None:
+        """Build the panels if that is due; returns the CPU seconds that it took.
+
+        None where a hand changed the scene in them: what that costs is not the panels'.
+        """
         passed = self.pace.due(seconds, surface, touched=self.session.touched)
         if self.steady:
             passed = seconds
         if not passed:
             return 0.0
-        started = cpu_seconds()
+        scene, started = self._scene_state(), cpu_seconds()
         self.session.frame(surface, passed, self.view.scale, self._draw_panels)
-        return cpu_seconds() - started
+        return cpu_seconds() - started if scene == self._scene_state() else None
+
+    def _scene_state(self) -> object:
+        stage = self.stage
+        return (stage.params.revision, stage.size, stage.frame) if stage else None
 
     def _draw_panels(self) -> None:
         assert self.surface
