@@ -67,3 +67,12 @@ def test_the_studio_is_drawn_whole_after_a_closed_surface(make_stage: MakeStage)
     """Leaving out back faces ends with the surface: floor and backdrop cover all the rest."""
     corners = picture(make_stage, closed=True)[[0, 0, -1, -1], [0, -1, 0, -1], :3]
     assert (corners > 40).all()
+
+
+def test_the_floor_hides_nothing_from_below(make_stage: MakeStage) -> None:
+    """A camera that dives under the floor still sees the ball."""
+    stage = make_stage(BALL, name="ball", files=SHADERS, size=(64, 64))
+    for pitch in (20.0, -20.0, -80.0):
+        stage.camera.stand({"pitch": pitch})
+        red, _, blue, _ = stage.pixels()[32, 32].astype(int)
+        assert red > blue + 50, f"at a pitch of {pitch} degrees"

@@ -107,7 +107,7 @@ class Painter:
         if shows == self._shadow_shows:
             return
         self._shadow_shows = None
-        self._write(frame, self.studio.light_values())
+        self._write(frame, self.studio.light_values)
         scene.gpu.casting_shadows = True
         try:
             self.studio.shadow.cast(draw)
@@ -116,6 +116,6 @@ class Painter:
         self._shadow_shows = shows
 
     def _write(self, frame: int, camera: Mapping[str, Any]) -> None:
-        self._block.write({**self.studio.frame_values(), **camera, "time": frame * FRAME_SECONDS,
+        self._block.write({**self.studio.frame_values, **camera, "time": frame * FRAME_SECONDS,
                            "number": frame, "resolution": self.picture.size})
         self._block.bind()

@@ -26,9 +26,20 @@ class StudioSet:
         backdrop = gpu.program("studio/screen.vert", "studio/backdrop.frag")
         ground = gpu.program("studio/ground.vert", "studio/ground.frag")
         self._backdrop = gpu.vertex_array(backdrop)
-        self._ground = gpu.vertex_array(ground, mode=moderngl.TRIANGLE_FAN)
+        self._ground = gpu.vertex_array(ground, mode=moderngl.TRIANGLE_FAN, closed=True)
+        self.frame_values = self._frame_values()
+        self.light_values = self._light_values()
 
-    def frame_values(self) -> dict[str, ArrayLike]:
+    def draw(self) -> None:
+        """Fill what the scene left empty: the floor, then the backdrop behind everything."""
+        context = self.gpu.context
+        context.depth_func = "<="
+        if self.plan.ground is not None:
+            self._ground.render(vertices=4)
+        self._backdrop.render(vertices=3)
+        context.depth_func = "<"
+
+    def _frame_values(self) -> dict[str, ArrayLike]:
         """The studio's part of the frame block."""
         low, high = ((*map(linear_light, Color(name, "").default), 1.0) for name in self.plan.backdrop)
         height = self.plan.ground
@@ -39,23 +50,13 @@ class StudioSet:
             "backdrop_low": low, "backdrop_high": high,
         }
 
-    def light_values(self) -> dict[str, ArrayLike]:
+    def _light_values(self) -> dict[str, ArrayLike]:
         """The frame block's camera, put where the key light is, for drawing the shadow map."""
         view, projection = self._light_view(), self._light_projection()
         both = view @ projection
         eye = np.asarray(self.plan.center) + 2.0 * self.plan.radius * KEY_DIRECTION
         return {"view": view, "projection": projection, "view_projection": both,
                 "clip_to_world": np.linalg.inv(both), "eye": eye}
-
-    def draw(self) -> None:
-        """Fill what the scene left empty: the floor, then the backdrop behind everything."""
-        context = self.gpu.context
-        context.enable_only(moderngl.DEPTH_TEST)
-        context.depth_func = "<="
-        if self.plan.ground is not None:
-            self._ground.render(vertices=4)
-        self._backdrop.render(vertices=3)
-        context.depth_func = "<"
 
     def _light_view(self) -> Matrix:
         center = np.asarray(self.plan.center, float)

@@ -60,7 +60,6 @@ class LiveStage:
         self._shader_problem: Problem | None = None
         self._scene_problem: Problem | None = None
         self._scene_stamp = _stamp(stage.entry.file)
-        self._shader_error: ShaderError | None = None
         self._since_watch = 0.0
         self._drawn: object = None
         self._query = query
@@ -75,11 +74,6 @@ class LiveStage:
     def failure(self) -> Exception | None:
         """What the scene raised, as long as that has not gone well since."""
         return self._error if self._failure else None
-
-    @property
-    def shader_error(self) -> ShaderError | None:
-        """The error that stands in a shader file."""
-        return self._shader_error
 
     def advance(self, seconds: float) -> None:
         """Play on, and look after edited files now and then."""
@@ -102,8 +96,8 @@ class LiveStage:
 
     def watch(self) -> None:
         """Take over edited shader and scene files."""
-        self._shader_error = self.stage.refresh_shaders()
-        self._shader_problem = problem_of(self._shader_error, self.stage.entry) if self._shader_error else None
+        error = self.stage.refresh_shaders()
+        self._shader_problem = problem_of(error, self.stage.entry) if error else None
         stamp = _stamp(self.stage.entry.file)
         if stamp != self._scene_stamp:
             self._scene_stamp = stamp
