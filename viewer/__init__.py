@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from viewer.engine.annotations import Click, Label, Table
     from viewer.engine.camera import Orbit
     from viewer.engine.fields import ParameterError
     from viewer.engine.formula_shader import formula_include
@@ -33,11 +34,13 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Click",
     "ColorScale",
     "Curve",
     "DemoscopeError",
     "Geometry",
     "Gpu",
+    "Label",
     "Measurements",
     "Orbit",
     "ParameterError",
@@ -45,6 +48,7 @@ __all__ = [
     "Scene",
     "Stage",
     "Studio",
+    "Table",
     "choice",
     "color",
     "file",
@@ -60,8 +64,8 @@ __all__ = [
 ]
 
 # Where they live, the first that has a name being its home.
-_HOMES = ("errors", "engine.fields", "engine.params", "engine.camera", "engine.gpu", "engine.formula_shader",
-          "engine.scene", "engine.stage", "output.headless")
+_HOMES = ("errors", "engine.fields", "engine.params", "engine.camera", "engine.annotations", "engine.gpu",
+          "engine.formula_shader", "engine.scene", "engine.stage", "output.headless")
 
 
 def __getattr__(name: str) -> Any:

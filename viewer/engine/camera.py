@@ -114,13 +114,24 @@ class OrbitCamera:
         """World to camera, (4, 4), in the row order that GL reads as columns."""
         return look_at(self.eye, self.target)
 
-    def projection(self, aspect: float) -> Matrix:
+    def projection(self, aspect: float, middle: tuple[float, float] = (0.0, 0.0)) -> Matrix:
         """Camera to clip space, (4, 4), for a picture ``aspect`` times as wide as high.
 
-        A picture narrower than a square keeps its horizontal field of view, so nothing is cut off.
+        A picture narrower than a square keeps its horizontal field of view, so nothing is cut off. The
+        target appears at ``middle``, each -1 to 1, as through a lens that is shifted, not turned.
         """
         field_of_view = math.degrees(2.0 * math.atan(self._half_height(aspect)))
-        return perspective(field_of_view, aspect, self.distance / 50.0, self.distance * 50.0)
+        matrix = perspective(field_of_view, aspect, self.distance / 50.0, self.distance * 50.0)
+        matrix[2, :2] -= middle
+        return matrix
+
+    def ray(self, place: tuple[float, float], aspect: float,
+            middle: tuple[float, float] = (0.0, 0.0)) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The eye, and the direction of length one in which it sees ``place`` of the picture, each -1 to 1."""
+        half = self._half_height(aspect)
+        across, up = half * aspect * (place[0] - middle[0]), half * (place[1] - middle[1])
+        direction = self.view()[:3, :3] @ np.array([across, up, -1.0])
+        return self.eye, direction / np.linalg.norm(direction)
 
     def _half_height(self, aspect: float) -> float:
         """Half of what the picture shows from bottom to top at distance 1."""

@@ -36,10 +36,11 @@ class Painter:
             self.release()
             raise
 
-    def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None]) -> None:
+    def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None],
+              middle: tuple[float, float] = (0.0, 0.0)) -> None:
         """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour."""
         self._cast_shadow(scene, frame, draw)
-        self.set_moment(camera, frame)
+        self.set_moment(camera, frame, middle)
         self.picture.begin()
         plain_state(self.context)
         self.studio.shadow.bind()
@@ -51,9 +52,9 @@ class Painter:
         self.studio.draw()
         self.picture.finish()
 
-    def set_moment(self, camera: OrbitCamera, frame: int) -> None:
+    def set_moment(self, camera: OrbitCamera, frame: int, middle: tuple[float, float] = (0.0, 0.0)) -> None:
         """Write the frame block for ``camera`` at ``frame``, so that shaders may run."""
-        view, projection = camera.view(), camera.projection(self.picture.size[0] / self.picture.size[1])
+        view, projection = camera.view(), camera.projection(self.picture.size[0] / self.picture.size[1], middle)
         both = view @ projection
         self._write(frame, {"view": view, "projection": projection, "view_projection": both,
                             "clip_to_world": np.linalg.inv(both), "eye": camera.eye})

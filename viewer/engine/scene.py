@@ -13,13 +13,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from viewer.engine.annotations import Click, Label, Table
 from viewer.engine.camera import Orbit
 from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.color_field import Color
@@ -29,7 +30,7 @@ from viewer.engine.params import Parameters
 from viewer.errors import DemoscopeError
 
 Geometry: TypeAlias = dict[str, NDArray[Any]]
-Measurements: TypeAlias = Mapping[str, "float | Curve"]
+Measurements: TypeAlias = Mapping[str, "float | Curve | Table"]
 
 
 class SceneError(DemoscopeError):
@@ -127,8 +128,9 @@ def checked_measurements(measurements: Any) -> Measurements:
     """What a scene's ``measure`` gave; raises TypeError for what is neither a number nor a Curve."""
     named = dict(measurements or {})
     for name, value in named.items():
-        if not isinstance(value, Curve) and not (np.ndim(value) == 0 and np.asarray(value).dtype.kind in "biuf"):
-            raise TypeError(f"{name} is neither a number nor a Curve")
+        if not isinstance(value, (Curve, Table)) and not (
+                np.ndim(value) == 0 and np.asarray(value).dtype.kind in "biuf"):
+            raise TypeError(f"{name} is neither a number nor a Curve or Table")
     return named
 
 
@@ -178,6 +180,12 @@ class Scene:
     def update(self, dt: float) -> None:
         """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""
 
+    def prepare(self) -> None:
+        """Make what follows from parameters and frame; called before each drawing, measuring and exporting.
+
+        May draw into framebuffers of its own. Scenes that only draw leave this out.
+        """
+
     def draw(self) -> None:
         """Draw. Called for the shadow map and for the picture; changes nothing that is simulated."""
         raise NotImplementedError(f"{type(self).__name__} has no draw()")
@@ -185,6 +193,22 @@ class Scene:
     def geometry(self) -> Geometry:
         """What the GPU made for this frame, as named arrays."""
         return {}
+
+    def labels(self) -> Sequence[Label]:
+        """Words in the picture; called after ``draw``."""
+        return ()
+
+    def remarks(self) -> Sequence[str]:
+        """Sentences about what is unusual now, such as a surface that is empty; shown beside the picture."""
+        return ()
+
+    def click(self, click: Click) -> Mapping[str, object]:
+        """Which parameters a click on the picture sets, and to what; none by default."""
+        return {}
+
+    def middle(self) -> tuple[float, float]:
+        """Where in the picture, each -1 to 1, the camera's target stands: aside where something else needs room."""
+        return 0.0, 0.0
 
     def color_scale(self) -> ColorScale | None:
         """What the colours now stand for, where they stand for a number; the window shows the scale."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import TypeVar
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.engine.annotations import Click
 from viewer.engine.camera import OrbitCamera
 from viewer.engine.catalog import SceneEntry, scene_error
 from viewer.engine.clock import FRAME_SECONDS, Clock, checked_frame
@@ -137,10 +138,9 @@ class Stage:
 
     def render(self) -> None:
         """Draw the current frame into the picture."""
-        self._check_held()
-        self._share_parameters()
+        self._prepare()
         self.painter.paint(self.scene, self.camera, self.clock.frame,
-                           lambda: self._guard("failed in draw", self.scene.draw))
+                           lambda: self._guard("failed in draw", self.scene.draw), self._middle())
 
     def pixels(self) -> NDArray[np.uint8]:
         """The current frame drawn: uint8 (height, width, 4), top row first."""
@@ -149,11 +149,27 @@ class Stage:
 
     def geometry(self) -> Geometry:
         """What the GPU made for the current frame, by name: see the scene."""
+        self._prepare()
         return self._off_screen("failed in geometry", lambda: checked_geometry(self.scene.geometry()))
 
     def measure(self) -> Measurements:
         """The scene's numbers and curves at the current frame."""
+        self._prepare()
         return self._off_screen("failed in measure", lambda: checked_measurements(self.scene.measure()))
+
+    def remarks(self) -> Sequence[str]:
+        """What the scene finds unusual about the current frame, in sentences."""
+        self._prepare()
+        return self._off_screen("failed in remarks", lambda: [str(remark) for remark in self.scene.remarks()])
+
+    def clicked(self, across: float, down: float) -> Mapping[str, object]:
+        """The parameters that a click asks for, at a place in pixels from the picture's upper left corner."""
+        width, height = self.size
+        place = (2.0 * across / width - 1.0, 1.0 - 2.0 * down / height)
+        self._prepare()
+        origin, direction = self.camera.ray(place, width / height, self._middle())
+        click = Click(place, origin, direction, width / height, height)
+        return self._off_screen("failed in click", lambda: dict(self.scene.click(click)))
 
     def color_scale(self) -> ColorScale | None:
         """What the picture's colours stand for, if they stand for a number."""
@@ -267,6 +283,12 @@ class Stage:
         except BaseException:
             self._go_to(before)     # a step that failed is one still to be made
             raise
+
+    def _prepare(self) -> None:
+        self._off_screen("failed in prepare", self.scene.prepare)
+
+    def _middle(self) -> tuple[float, float]:
+        return self._guard("failed in middle", self.scene.middle)
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
         self._check_held()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.engine.annotations import Table
 from viewer.engine.scene import Curve, Measurements
 from viewer.engine.stage import Stage
 from viewer.ui.guard import one_line
@@ -73,7 +74,7 @@ class Measurer:
 
 def prepared(measurements: Measurements) -> Report:
     """Measurements as texts and plots."""
-    readouts = [readout(name, value) for name, value in measurements.items() if not isinstance(value, Curve)]
+    readouts = [readout(name, value) for name, value in measurements.items() if not isinstance(value, (Curve, Table))]
     plots = [_plot(name, value) for name, value in measurements.items() if isinstance(value, Curve)]
     return Report(readouts, plots)
 
