@@ -46,6 +46,13 @@ class Gpu:
         self._owned.append(thing)
         return thing
 
+    def discard(self, *things: Any) -> None:
+        """Free some of what was made here before the rest, to make room for larger ones."""
+        self.context.detect_framebuffer(0).use()    # GL may not go back to a framebuffer that is gone
+        for thing in things:
+            self._owned.remove(thing)
+            thing.release()
+
     def share(self, params: Parameters) -> None:
         """Give every program the parameters' uniforms, as they now are."""
         if params.revision != self.parameters_revision:

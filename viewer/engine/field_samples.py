@@ -1,0 +1,157 @@
+"""A field's values at the points of a grid, made and kept on the GPU; only their signs come back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.gpu import Gpu, GpuError
+from viewer.engine.program import Program
+from viewer.kit.marching_grid import Grid
+
+Triple = tuple[float, float, float]
+Sides = NDArray[np.uint8]
+
+OUTSIDE, INSIDE, NO_VALUE = 0, 1, 2
+MOST_SAMPLES = 2**27            # their numbers, and three bits more, have to fit in 32 bits
+BYTES_PER_SAMPLE = 10           # value and side on the GPU, side and bits here, and room to work
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Points in space: ``samples`` of them along x, y and z, the first at ``corner``, ``step`` apart."""
+
+    samples: tuple[int, int, int]
+    corner: Triple
+    step: Triple
+
+    @property
+    def count(self) -> int:
+        """How many points there are."""
+        nx, ny, nz = self.samples
+        return nx * ny * nz
+
+    @property
+    def grid(self) -> Grid:
+        """How their values lie in an array: indexed [z, y, x]."""
+        nx, ny, nz = self.samples
+        return Grid((nz, ny, nx), (2, 1, 0))
+
+
+class FieldSamples:
+    """The values of a field at the points of a lattice, in the texture ``values``.
+
+    ``include`` gives GLSL for ``float field(vec3 place)``; None for a field that is filled in from an
+    array. ``sides`` (nz, ny, nx) says of each sample whether it is inside, outside or has no value.
+    """
+
+    def __init__(self, gpu: Gpu, include: Callable[[], str] | None) -> None:
+        self.gpu = gpu
+        self.lattice = Lattice((2, 2, 2), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+        self.sides: Sides = np.zeros((2, 2, 2), np.uint8)
+        self.evaluate_ms = 0.0
+        self._rows = 0
+        self._made: list[Any] = []
+        self._texels: NDArray[np.uint8] = np.empty(0, np.uint8)
+        self._program: Program | None = None
+        if include:
+            self._program = gpu.program("studio/screen.vert", "isosurface/evaluate.frag",
+                                        generated={"generated/field.glsl": include})
+            self._everywhere = gpu.vertex_array(self._program)
+        self._make_room(self.lattice)
+
+    def evaluate(self, lattice: Lattice, level: float) -> None:
+        """Compute the field at every point of ``lattice``; raises GpuError where that is too much."""
+        assert self._program
+        started = time.perf_counter()
+        self._make_room(lattice)
+        self.describe_to(self._program)
+        self._program["u_surface_level"] = level
+        with drawing_into(self.gpu, self._target, self._target.size):
+            self._everywhere.render(vertices=3)
+        self._target.read_into(self._texels, components=1, attachment=1, alignment=1)    # waits for the GPU
+        self.sides = self._texels[:lattice.count].reshape(lattice.grid.shape)
+        self.evaluate_ms = 1e3 * (time.perf_counter() - started)
+
+    def fill(self, values: NDArray[np.float32], lattice: Lattice, level: float) -> None:
+        """Take over values (nz, ny, nx) float32 where they changed, and find their sides of the level."""
+        started = time.perf_counter()
+        if lattice != self.lattice or self._filled is not values:
+            self._make_room(lattice)
+            texels = np.zeros(self._target.width * self._target.height, np.float32)
+            texels[:values.size] = values.reshape(-1)
+            self.values.write(texels)
+            self._filled = values
+        self.sides = (values < np.float32(level)).view(np.uint8)
+        unknown = ~np.isfinite(values)
+        if unknown.any():
+            self.sides[unknown] = NO_VALUE
+        self.evaluate_ms = 1e3 * (time.perf_counter() - started)
+
+    def describe_to(self, program: Program) -> None:
+        """Tell ``program`` where the samples are, in space and in the texture: see lib/grid.glsl."""
+        program["u_grid_samples"] = self.lattice.samples
+        program["u_grid_rows"] = self._rows
+        program["u_grid_corner"] = self.lattice.corner
+        program["u_grid_step"] = self.lattice.step
+
+    def read(self, samples: NDArray[np.integer[Any]]) -> NDArray[np.float32]:
+        """The values of some samples, given by number."""
+        found = np.empty(len(samples), np.float32)
+        for place, number in enumerate(samples):
+            down, across = divmod(int(number), self._target.width)
+            found[place] = np.frombuffer(self._target.read((across, down, 1, 1), 1, dtype="f4"), np.float32)[0]
+        return found
+
+    def read_all(self) -> NDArray[np.float32]:
+        """All values, (nz, ny, nx)."""
+        texels = np.frombuffer(self._target.read(components=1, dtype="f4"), np.float32)
+        return texels[:self.lattice.count].reshape(self.lattice.grid.shape)
+
+    def _make_room(self, lattice: Lattice) -> None:
+        """Textures for ``lattice``: as many rows of samples beside each other as make them about square."""
+        if self._rows and lattice.samples == self.lattice.samples:
+            self.lattice = lattice
+            return
+        columns, lines = lattice.samples[0], lattice.samples[1] * lattice.samples[2]
+        rows = max(1, round((lines / columns) ** 0.5))
+        size = (rows * columns, -(-lines // rows))
+        self._check(lattice, size)
+        self.gpu.discard(*self._made)
+        self._made = []
+        self.values = self.gpu.texture(size, 1, dtype="f4", label="field values")
+        side = self.gpu.texture(size, 1, label="field sides")
+        self._target = self.gpu.framebuffer([self.values, side], label="field")
+        self._made = [self._target, side, self.values]
+        self._texels = np.empty(size[0] * size[1], np.uint8)
+        self._rows, self.lattice, self._filled = rows, lattice, None
+
+    def _check(self, lattice: Lattice, size: tuple[int, int]) -> None:
+        nx, ny, nz = lattice.samples
+        if lattice.count > MOST_SAMPLES:
+            raise GpuError(f"{nx} x {ny} x {nz} samples need {lattice.count * BYTES_PER_SAMPLE / 2**30:.1f} GiB; "
+                           f"at most {MOST_SAMPLES * BYTES_PER_SAMPLE / 2**30:.1f} GiB is allowed")
+        self.gpu.check_size(size, f"a grid of {nx} x {ny} x {nz} samples, in a texture")
+
+
+class drawing_into:     # noqa: N801, used as a statement
+    """Draw a list of texels into part of a framebuffer, and go back to the one before."""
+
+    def __init__(self, gpu: Gpu, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+        self.gpu, self.target, self.size = gpu, target, size
+
+    def __enter__(self) -> None:
+        self.before = self.gpu.context.fbo
+        self.target.viewport = (0, 0, *self.size)
+        self.target.use()
+        self.gpu.context.enable_only(moderngl.NOTHING)
+
+    def __exit__(self, *_: object) -> None:
+        if self.before:
+            self.before.use()

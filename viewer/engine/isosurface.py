@@ -1,0 +1,203 @@
+"""A surface through a sampled field, made fast enough to play with: signs on the GPU, topology here.
+
+The GPU evaluates the field and says which samples are inside. From those signs alone the crossed edges
+and the triangles between them follow, in NumPy. Back on the GPU a fragment for each crossed edge finds
+where exactly the surface crosses and how it lies there; the mesh stays in textures from which it is drawn.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, drawing_into
+from viewer.engine.gpu import Gpu
+from viewer.engine.program import Program, VertexArray
+from viewer.kit import bits
+from viewer.kit.marching import renumbered
+from viewer.kit.marching_grid import Grid, Topology, cells_touching, has_neighbour, topology
+
+WIDTH = 1024            # vertices in a row of the textures
+VALUES_UNIT, LIST_UNIT = 0, 1
+NO_CELLS = Topology(np.empty(0, np.uint32), np.empty((0, 3), np.int32), np.empty(0, np.intp),
+                    np.empty(0, np.uint8), np.empty(0, np.int32))
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What surface to make: at which level, by which method, and what to find out on the way."""
+
+    level: float
+    method: str = "cubes"
+    cut_jumps: bool = False
+    curvature: bool = False
+
+
+class Isosurface:
+    """A mesh on the GPU. Draw ``count`` indices of ``indices``; a vertex shader finds vertex ``gl_VertexID``
+    at texel (gl_VertexID % 1024, gl_VertexID / 1024) of ``places`` and ``normals``.
+
+    ``places`` are in the field's own space; the fourth component of ``normals`` is the mean curvature.
+    ``found`` is the topology, ``jumps`` the number of edges where the field jumps past the level.
+    """
+
+    def __init__(self, gpu: Gpu, samples: FieldSamples, include: Callable[[], str]) -> None:
+        self.gpu, self.samples = gpu, samples
+        self._include = include
+        self.found = NO_CELLS
+        self.vertex_count = self.count = self.jumps = 0
+        self.left_out: bits.Words | None = None
+        self.extract_ms = 0.0
+        self.indices = gpu.buffer(reserve=4 * 3 * 1024, label="triangles")
+        self._passes: dict[str, tuple[Program, VertexArray]] = {}
+        self._made: list[Any] = []
+        self._rows = 0
+        self._make_room(1)
+        self._pass("crossing")
+
+    def extract(self, wanted: Wanted) -> None:
+        """Make the surface of the samples, as they now are."""
+        started = time.perf_counter()
+        inside, self.left_out = _inside_and_left_out(self.samples)
+        axes = self.samples.lattice.grid.axes
+        self.found = topology(inside, axes, wanted.method, self.left_out)
+        flags = self._place_crossings(wanted)
+        self.jumps = int(flags.sum())
+        if self.jumps:
+            torn = torn_cells(self.found.crossings[flags], self.samples.lattice.grid)
+            self.left_out = torn if self.left_out is None else self.left_out | torn
+            self.found = topology(inside, axes, wanted.method, self.left_out)
+        self._send_triangles(self.found.triangles)
+        self.gpu.context.finish()
+        self.extract_ms = 1e3 * (time.perf_counter() - started)
+
+    def take(self, make: Callable[[], tuple[NDArray[np.float64], NDArray[np.int32]]], wanted: Wanted) -> None:
+        """Take over a surface made elsewhere: vertices (n, 3) in samples, triangles (m, 3)."""
+        started = time.perf_counter()
+        _, self.left_out = _inside_and_left_out(self.samples)
+        vertices, triangles = make()
+        self.found, self.jumps = NO_CELLS, 0
+        rows = np.ones((len(vertices), 4), np.float32)
+        rows[:, :3] = vertices
+        self._run("place", rows, 4, "f4", wanted)
+        self._send_triangles(triangles)
+        self.gpu.context.finish()
+        self.extract_ms = 1e3 * (time.perf_counter() - started)
+
+    def mesh(self) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32]]:
+        """Vertices (n, 3), triangles (m, 3) and normals (n, 3), read back; vertices that no triangle has left out."""
+        places, normals = (self._read(attachment)[:, :3] for attachment in (0, 1))
+        triangles = np.frombuffer(self.indices.read(4 * self.count) if self.count else b"", np.int32).reshape(-1, 3)
+        used = np.zeros(self.vertex_count, np.bool_)
+        used[triangles.reshape(-1)] = True
+        if used.all():
+            return places.copy(), triangles.copy(), normals.copy()
+        kept = np.flatnonzero(used)
+        return places[kept], renumbered(triangles, kept), normals[kept]
+
+    def bind(self, places: int, normals: int) -> None:
+        """Let shaders read the vertices through these texture units."""
+        self.places.use(places)
+        self.normals.use(normals)
+
+    def _place_crossings(self, wanted: Wanted) -> NDArray[np.bool_]:
+        """Find where each crossed edge is crossed; returns which of them the field jumps over."""
+        self._run("crossing", self.found.crossings, 1, "u4", wanted)
+        if not wanted.cut_jumps or not self.vertex_count:
+            return np.zeros(self.vertex_count, np.bool_)
+        size = (WIDTH, -(-self.vertex_count // WIDTH))
+        flags = np.frombuffer(self._target.read((0, 0, *size), 1, attachment=2, alignment=1), np.uint8)
+        return flags[:self.vertex_count] != 0
+
+    def _run(self, name: str, rows: NDArray[Any], components: int, dtype: str, wanted: Wanted) -> None:
+        """Let the pass ``name`` make a vertex of each row."""
+        self.vertex_count = len(rows)
+        lines = -(-len(rows) // WIDTH)
+        if not lines:
+            return
+        self._make_room(lines)
+        given = self._edges if name == "crossing" else self._explicit()
+        padded = np.zeros((lines * WIDTH, components), dtype)
+        padded[:len(rows)] = rows.reshape(-1, components)
+        given.write(padded, (0, 0, WIDTH, lines))
+        program, everywhere = self._pass(name)
+        self.samples.describe_to(program)
+        program["u_surface_level"] = wanted.level
+        program["u_find_jumps"], program["u_bends"] = wanted.cut_jumps, wanted.curvature
+        self.samples.values.use(VALUES_UNIT)
+        given.use(LIST_UNIT)
+        with drawing_into(self.gpu, self._target, (WIDTH, lines)):
+            everywhere.render(vertices=3)
+
+    def _pass(self, name: str) -> tuple[Program, VertexArray]:
+        if name not in self._passes:
+            program = self.gpu.program("studio/screen.vert", f"isosurface/{name}.frag",
+                                       generated={"generated/field.glsl": self._include})
+            program["u_values"] = program["u_volume"] = VALUES_UNIT
+            program["u_crossings"] = program["u_places"] = LIST_UNIT
+            self._passes[name] = program, self.gpu.vertex_array(program)
+        return self._passes[name]
+
+    def _send_triangles(self, triangles: NDArray[np.int32]) -> None:
+        self.count = triangles.size
+        if triangles.nbytes > self.indices.size:
+            self.indices.orphan(int(1.25 * triangles.nbytes) // 4 * 4)
+        if self.count:
+            self.indices.write(triangles)
+
+    def _make_room(self, lines: int) -> None:
+        """Textures of at least ``lines`` rows."""
+        if lines <= self._rows:
+            return
+        self._rows = int(1.25 * lines) + 1
+        self.gpu.discard(*self._made)
+        size = (WIDTH, self._rows)
+        self._edges = self.gpu.texture(size, 1, dtype="u4", label="crossings")
+        self._given: moderngl.Texture | None = None
+        self.places = self.gpu.texture(size, 4, dtype="f4", label="places")
+        self.normals = self.gpu.texture(size, 4, dtype="f4", label="normals")
+        jump = self.gpu.texture(size, 1, label="jumps")
+        self._target = self.gpu.framebuffer([self.places, self.normals, jump], label="vertices")
+        self._made = [self._target, jump, self.normals, self.places, self._edges]
+
+    def _explicit(self) -> moderngl.Texture:
+        """The texture for vertices whose places are given."""
+        if self._given is None:
+            self._given = self.gpu.texture((WIDTH, self._rows), 4, dtype="f4", label="given places")
+            self._made.append(self._given)
+        return self._given
+
+    def _read(self, attachment: int) -> NDArray[np.float32]:
+        lines = -(-self.vertex_count // WIDTH)
+        if not lines:
+            return np.empty((0, 4), np.float32)
+        texels = self._target.read((0, 0, WIDTH, lines), 4, attachment=attachment, dtype="f4")
+        return np.frombuffer(texels, np.float32).reshape(-1, 4)[:self.vertex_count]
+
+
+def torn_cells(crossings: NDArray[np.uint32], grid: Grid) -> bits.Words:
+    """The cells around edges given by their names, for cubes as for tetrahedra."""
+    torn = np.zeros(int(np.prod(grid.shape)), np.bool_)
+    samples, directions = crossings >> np.uint32(3), crossings & np.uint32(7)
+    for direction in np.unique(directions):
+        starts = samples[directions == direction].astype(np.intp)
+        for back in range(8):
+            if not back & int(direction):       # along the other axes the edge has neighbours on both sides
+                before = starts - grid.offset(back)
+                torn[before[before >= 0]] = True
+    return bits.packed(torn) & has_neighbour(grid, 7)
+
+
+def _inside_and_left_out(samples: FieldSamples) -> tuple[NDArray[np.uint8], bits.Words | None]:
+    """The samples that are inside as 1, and the cells that touch one without a value."""
+    sides = samples.sides
+    if sides.max() < NO_VALUE:
+        return sides, None
+    inside = (sides == INSIDE).view(np.uint8)
+    return inside, cells_touching(bits.packed(sides == NO_VALUE), samples.lattice.grid)
