@@ -89,6 +89,17 @@ def test_list_as_json_tells_limits(run: Run, scene_pack: ScenePack) -> None:
         "integer", 1, 12, 4, True)
 
 
+def test_list_as_json_tells_groups_and_conditions(run: Run, scene_pack: ScenePack) -> None:
+    """As the scene wrote them; both are empty where it wrote none."""
+    grouped = packs.TILE.replace('"How bright")', '"How bright", group="Light", when="lit")').replace(
+        "        shade: float", '        lit: bool = toggle(True, "Whether it shines")\n        shade: float').replace(
+        "integer, slider", "integer, slider, toggle")
+    listed = json.loads(run("list", "--json", "--pack", scene_pack(tile=grouped)))
+    about = {one["name"]: one for scene in listed if scene["name"] == "tile" for one in scene["parameters"]}
+    assert (about["shade"]["group"], about["shade"]["when"]) == ("Light", "lit")
+    assert (about["sides"]["group"], about["sides"]["when"]) == ("", "")
+
+
 @pytest.mark.parametrize("form", [[], ["--json"]])
 def test_list_goes_on_after_a_broken_scene(form: list[str], scene_pack: ScenePack,
                                            capsys: pytest.CaptureFixture[str]) -> None:
@@ -200,6 +211,38 @@ def test_no_display_draws_every_scene(tmp_path: Path, monkeypatch: pytest.Monkey
 
     assert cli.main(["walk", "--pack", str(pack), "--size", "32x20", "--set", "stride=0.5"]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "captures/walk-000000.png")
+
+
+def test_measure_gives_tables_as_rows(run: Run, scene_pack: ScenePack) -> None:
+    """Cells by their columns' names; what is no finite number is null."""
+    measured = "Table((\'case\', \'cells\', \'share\'), [(\'none\', 3, 0.5), (\'two\', 4, float(\'nan\'))])"
+    source = packs.failing("measure", f"return {{'cases': {measured}}}").replace("import Param", "import Table, Param")
+    assert json.loads(run("measure", "tile", "--pack", scene_pack(tile=source))) == {
+        "cases": [{"case": "none", "cells": 3, "share": 0.5}, {"case": "two", "cells": 4, "share": None}]}
+
+
+REMARKING = packs.TILE + """
+    def geometry(self):
+        return {"height": [1.0]}
+
+    def remarks(self):
+        return [f"Frame {self.frame} is\\n odd", "No surface", "No surface"]
+"""
+
+
+@pytest.mark.parametrize("words", [
+    ["capture", "--frames", "0,7", "--size", "8x8", "--out", "."],
+    ["capture", "--frames", "0,7", "--size", "64x48", "--out", ".", "--panels"],
+    ["export", "--frame", "7", "--out", "tile.npz"], ["measure", "--frame", "7"]])
+def test_remarks_are_notes_beside_the_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene_pack: ScenePack,
+                                             capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
+    """Those of the final frame, each once, on stderr; it all went well."""
+    pack = scene_pack(tile=REMARKING)
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([words[0], "tile", "--pack", str(pack), *words[1:]]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == "note: Frame 7 is odd\nnote: No surface\n"
+    assert printed.out and "note" not in printed.out
 
 
 # Mistakes
@@ -408,6 +451,7 @@ def test_a_name_that_the_terminal_cannot_write_is_no_error(tmp_path: Path) -> No
 @pytest.mark.parametrize(("where", "body", "command"), [
     ("measure", "return {'depth': 'deep'}", "measure"), ("measure", "return [1, 2]", "measure"),
     ("geometry", "return {'vertices': ['x'], 'triangles': [[0, 1, 2]]}", "export"),
+    ("measure", "self.remarks = lambda: 3", "measure"), ("measure", "self.remarks = lambda: 1 / 0", "measure"),
     ("geometry", "return {'vertices': [[0, 0, 0]], 'triangles': [[0, 1, 2]]}", "export")])
 def test_what_no_scene_may_give_is_one_line(tmp_path: Path, refused: Run, scene_pack: ScenePack, where: str, body: str,
                                             command: str) -> None:

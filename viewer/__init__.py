@@ -11,11 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from viewer.engine.annotations import Click, Label, Table
     from viewer.engine.camera import Orbit
-    from viewer.engine.fields import ParameterError
-    from viewer.engine.formula_shader import formula_include
-    from viewer.engine.gpu import Gpu
-    from viewer.engine.params import (
-        Parameters,
+    from viewer.engine.declarations import (
         choice,
         color,
         file,
@@ -26,6 +22,10 @@ if TYPE_CHECKING:
         text,
         toggle,
     )
+    from viewer.engine.fields import ParameterError
+    from viewer.engine.formula_shader import formula_include
+    from viewer.engine.gpu import Gpu
+    from viewer.engine.params import Parameters
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.stage import Stage
     from viewer.errors import DemoscopeError
@@ -64,8 +64,8 @@ __all__ = [
 ]
 
 # Where they live, the first that has a name being its home.
-_HOMES = ("errors", "engine.fields", "engine.params", "engine.camera", "engine.annotations", "engine.gpu",
-          "engine.formula_shader", "engine.scene", "engine.stage", "output.headless")
+_HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
+          "engine.gpu", "engine.formula_shader", "engine.scene", "engine.stage", "output.headless")
 
 
 def __getattr__(name: str) -> Any:

@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from viewer.engine.catalog import Catalog, summary
 from viewer.engine.context import has_display
@@ -19,6 +19,9 @@ from viewer.engine.scene import SceneError
 from viewer.engine.shaders import ShaderError
 from viewer.errors import DemoscopeError
 from viewer.options import MISTAKE, parse
+
+if TYPE_CHECKING:
+    from viewer.engine.stage import Stage
 
 INTERRUPTED = 130    # as shells count: 128 and the signal's number
 READER_GONE = 141
@@ -87,13 +90,13 @@ def run_capture(options: argparse.Namespace) -> int:
     frames = parse_frames(options.frames)
     with _stage(options) as stage:
         if not options.panels:
-            print(capture_timed(stage, frames, options.out))
+            _tell(stage, capture_timed(stage, frames, options.out))
             return 0
         from viewer.ui.headless import panels
 
         window = panels(stage, Catalog(options.pack))
         try:
-            print(capture_timed(stage, frames, options.out, window.pixels))
+            _tell(stage, capture_timed(stage, frames, options.out, window.pixels))
         finally:
             window.release()
     return 0
@@ -107,7 +110,7 @@ def run_export(options: argparse.Namespace) -> int:
     with _stage(options) as stage:
         stage.seek(options.frame)
         export(stage.geometry(), options.out)
-    print(options.out)
+        _tell(stage, str(options.out))
     return 0
 
 
@@ -117,7 +120,7 @@ def run_measure(options: argparse.Namespace) -> int:
 
     with _stage(options) as stage:
         stage.seek(options.frame)
-        print(as_json(stage.measure()))
+        _tell(stage, as_json(stage.measure()))
     return 0
 
 
@@ -164,10 +167,22 @@ def _stage(options: argparse.Namespace) -> Any:
                     camera=getattr(options, "camera", None), packs=options.pack)
 
 
+def _tell(stage: Stage, result: str) -> None:
+    """Print what was asked for, and on stderr what the scene finds unusual about the frame it stands at."""
+    remarks = dict.fromkeys(stage.remarks())
+    print(result)
+    for remark in remarks:
+        print(f"note: {_one_line(remark)}", file=sys.stderr)
+
+
 def _complain(error: object) -> int:
-    line = " ".join(str(error).split())
-    print(f"error: {line if len(line) <= LONGEST_LINE else line[:LONGEST_LINE - 3] + '...'}", file=sys.stderr)
+    print(f"error: {_one_line(error)}", file=sys.stderr)
     return MISTAKE
+
+
+def _one_line(said: object) -> str:
+    line = " ".join(str(said).split())
+    return line if len(line) <= LONGEST_LINE else line[:LONGEST_LINE - 3] + "..."
 
 
 def _make_streams_sure() -> None:

@@ -287,12 +287,12 @@ def test_description_is_complete_and_plain() -> None:
     """Everything about a parameter as JSON, without NaN, the default readable by ``parse``."""
     for name, one in Everything.declared.items():
         about = json.loads(json.dumps(one.describe(), allow_nan=False))
-        assert {"name", "kind", "default", "unit", "help", "rebuild"} <= set(about)
+        assert {"name", "kind", "default", "unit", "help", "rebuild", "group", "when"} <= set(about)
         assert (about["name"], about["kind"], about["help"]) == (name, one.kind, one.help)
         assert one.stored(one.parse(about["default"])) == about["default"]
     assert field("amplitude").describe() == {
         "name": "amplitude", "kind": "slider", "default": 0.05, "unit": "radii", "help": "Ripple height",
-        "rebuild": False, "minimum": 0.0, "maximum": 0.5, "logarithmic": False}
+        "rebuild": False, "group": "", "when": "", "minimum": 0.0, "maximum": 0.5, "logarithmic": False}
     assert field("direction").describe()["options"] == ["x", "normal"]
     assert field("model").describe()["suffixes"] == [".glb", ".gltf"]
 
@@ -332,3 +332,73 @@ def test_an_interval_may_be_an_array() -> None:
     params = Everything()
     params.lifetime = np.array([0.5, 1.5])  # type: ignore[assignment]
     assert params.lifetime == (0.5, 1.5)
+
+
+class Grouped(Parameters):
+    """Parameters under headings, some of which depend on others."""
+
+    source: str = choice("formula", ["formula", "volume", "points"], "Where the field comes from")
+    slice: str = choice("none", ["none", "x", "y"], "Where to cut", group="View", when="source!=points")
+    depth: float = slider(0.0, -1.0, 1.0, "How far in", group="View", when="slice!=none, source = formula|volume")
+    walk: bool = toggle(False, "Go from cell to cell", group="Cells")
+    pause: bool = toggle(False, "Stand still", group="Cells", when="walk")
+    height = formula("lift*x", "How high", group="Field", when="source=formula")
+    bend = formula("lift*y", "How bent", group="Bend", when="!walk")
+
+
+@pytest.mark.parametrize(("values", "active"), [
+    ({}, {"source", "slice", "walk", "height", "bend", "lift"}),
+    ({"slice": "x"}, {"source", "slice", "depth", "walk", "height", "bend", "lift"}),
+    ({"slice": "x", "source": "volume", "walk": True}, {"source", "slice", "depth", "walk", "pause"}),
+    ({"slice": "x", "source": "points"}, {"source", "walk", "bend", "lift"}),
+])
+def test_conditions_follow_the_values(values: dict[str, object], active: set[str]) -> None:
+    """Alternatives, negations and several conditions; a formula's own slider counts where one formula does."""
+    params = Grouped(values)
+    assert {name for name in params.fields if params.is_active(name)} == active
+
+
+def test_what_has_no_effect_can_be_set_all_the_same() -> None:
+    """A preset or an option may come before what gives it its effect."""
+    params = Grouped({"source": "points"})
+    params.update({"depth": 0.5, "pause": True})
+    assert (params.depth, params.pause, params.is_active("depth")) == (0.5, True, False)
+    with pytest.raises(ParameterError, match="unknown parameter dept; did you mean depth"):
+        params.is_active("dept")
+
+
+def test_groups_and_conditions_are_described() -> None:
+    """As they were written; a formula's own slider stands where the first of its formulas does."""
+    about = {name: one.describe() for name, one in Grouped().fields.items()}
+    assert (about["depth"]["group"], about["depth"]["when"]) == ("View", "slice!=none, source = formula|volume")
+    assert (about["source"]["group"], about["source"]["when"]) == ("", "")
+    assert (about["lift"]["group"], about["lift"]["when"]) == ("Field", "source=formula")
+
+
+@pytest.mark.parametrize(("when", "message"), [
+    ("sorce=volume", "unknown parameter sorce; did you mean source?"),
+    ("source=volum", "source = volum is not one of formula, volume; did you mean volume?"),
+    ("source=volume|", "source = is not one of formula, volume"),
+    ("source", "source is a choice and cannot stand alone; only a toggle can"),
+    ("walk=true", "walk is a toggle; write walk or !walk"),
+    ("size=1", "size is a slider; only choices and toggles decide about others"),
+    ("walk,", "nothing is not of the form choice=option, choice!=option, toggle or !toggle"),
+    ("walk and source", "walk and source is not of the form"),
+    ("own", "unknown parameter own"),
+])
+def test_conditions_that_cannot_be_are_refused(when: str, message: str) -> None:
+    """When the class is made, naming the parameter, the condition and what is wrong in it."""
+    with pytest.raises(ParameterError) as refused:
+        type("Wrong", (Parameters,), {
+            "source": choice("formula", ["formula", "volume"], ""), "walk": toggle(False, ""),
+            "size": slider(0, 0, 1, ""), "own": toggle(True, "", when=when)})
+    assert str(refused.value).startswith(f"own: when = {when}: {message}")
+
+
+def test_a_subclass_keeps_conditions_and_has_them_checked() -> None:
+    """An option that it takes away can no longer be asked about."""
+    More = type("More", (Grouped,), {"extra": toggle(True, "", when="walk")})
+    assert not More().is_active("extra")
+    assert not More().is_active("depth")
+    with pytest.raises(ParameterError, match=r"slice: when = source!=points: source = points is not one of formula"):
+        type("Fewer", (Grouped,), {"source": choice("formula", ["formula", "volume"], "")})

@@ -223,7 +223,7 @@ def _note_places(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
 
     noting(parameter_panel, "draw_value", lambda field, *_: field.name)
     noting(imgui, "input_text_multiline", lambda *_: "formula")
-    for function in ("button", "small_button", "selectable", "begin_tab_item", "menu_item",
+    for function in ("button", "small_button", "selectable", "tree_node_ex", "begin_tab_item", "menu_item",
                      "begin_menu", "slider_int", "begin_combo", "input_text", "input_text_with_hint"):
         noting(imgui, function, lambda label, *_: label)
     for module in (parameter_panel, timeline):

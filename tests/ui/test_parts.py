@@ -10,11 +10,12 @@ import pytest
 
 from viewer.engine.scene import Curve
 from viewer.engine.stage import Stage
-from viewer.ui import measurer
+from viewer.ui import measurer, sparing_question
 from viewer.ui.history import History
 from viewer.ui.imgui_session import Surface
 from viewer.ui.layout import View, arrange
-from viewer.ui.measurer import number_text, prepared, readout
+from viewer.ui.measurer import prepared, readout
+from viewer.ui.number_text import number_text
 from viewer.ui.pace import Pace
 from viewer.ui.typed_fields import excerpt
 
@@ -110,14 +111,14 @@ class Numbers:
 
 def test_what_rests_is_measured_though_a_cursor_stays_in_the_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """A formula that has been typed has its numbers beside it before the hand goes elsewhere."""
-    monkeypatch.setattr(measurer, "SHARE_OF_TIME", 1.0)
+    monkeypatch.setattr(sparing_question, "SHARE_OF_TIME", 1.0)
     numbers = Numbers()
     watch = measurer.Measurer(cast(Stage, numbers))
     watch.run(dragging=True)
     numbers.revision = 1
     watch.run(dragging=True)
     assert numbers.measured == 1
-    monkeypatch.setattr(measurer, "RESTED_SECONDS", 0.0)
+    monkeypatch.setattr(sparing_question, "RESTED_SECONDS", 0.0)
     watch.run(dragging=True)
     assert numbers.measured == 2
 

@@ -57,6 +57,7 @@ class FieldSamples:
         self.sides: Sides = np.zeros((2, 2, 2), np.uint8)
         self.evaluate_ms = 0.0
         self._rows = 0
+        self._filled: NDArray[np.float32] | None = None
         self._made: list[Any] = []
         self._texels: NDArray[np.uint8] = np.empty(0, np.uint8)
         self._program: Program | None = None

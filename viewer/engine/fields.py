@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
-from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeAlias, TypeVar
 
 from viewer.errors import DemoscopeError
 
@@ -31,10 +31,13 @@ class Field(Generic[T]):
     """One declared parameter: its name, default, limits, unit, help and what a change entails.
 
     ``rebuild`` marks a parameter whose change needs a new scene; the stage makes one and keeps the
-    camera, the clock and every other value.
+    camera, the clock and every other value. ``group`` is the heading under which it stands, ``when`` the
+    condition, see ``conditions``, without which it has no effect.
     """
 
     kind: ClassVar[str]
+    group: str = ""
+    when: str = ""
 
     def __init__(self, default: object, help: str, *, unit: str = "", rebuild: bool = False) -> None:
         self.name = ""
@@ -51,6 +54,11 @@ class Field(Generic[T]):
 
     def __set__(self, instance: Any, value: object) -> None:
         instance.set(self.name, value)
+
+    def placed(self, group: str, when: str) -> Self:
+        """The same field, under a heading and a condition."""
+        self.group, self.when = group, when
+        return self
 
     def parse(self, value: object) -> T:
         """The value meant by ``value``; raises ParameterError naming it and what is allowed."""
@@ -71,7 +79,8 @@ class Field(Generic[T]):
     def describe(self) -> dict[str, Any]:
         """Everything a script or a document needs to know of this parameter, ready for JSON."""
         about: dict[str, Any] = {"name": self.name, "kind": self.kind, "default": self.stored(self.default)}
-        return about | {"unit": self.unit, "help": self.help, "rebuild": self.rebuild} | self.limits()
+        about |= {"unit": self.unit, "help": self.help, "rebuild": self.rebuild}
+        return about | {"group": self.group, "when": self.when} | self.limits()
 
     def limits(self) -> dict[str, Any]:
         """The allowed values, ready for JSON."""

@@ -21,7 +21,7 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.program import Program, VertexArray
 from viewer.kit import bits
 from viewer.kit.marching import renumbered
-from viewer.kit.marching_grid import Grid, Topology, cells_touching, has_neighbour, topology
+from viewer.kit.marching_grid import Grid, Topology, cells_touching, has_neighbour, in_order, topology
 
 WIDTH = 1024            # vertices in a row of the textures
 VALUES_UNIT, LIST_UNIT = 0, 1
@@ -37,6 +37,7 @@ class Wanted:
     method: str = "cubes"
     cut_jumps: bool = False
     curvature: bool = False
+    in_order: bool = False      # the triangles cell after cell
 
 
 class Isosurface:
@@ -73,6 +74,8 @@ class Isosurface:
             torn = torn_cells(self.found.crossings[flags], self.samples.lattice.grid)
             self.left_out = torn if self.left_out is None else self.left_out | torn
             self.found = topology(inside, axes, wanted.method, self.left_out)
+        if wanted.in_order:
+            self.found = in_order(self.found)
         self._send_triangles(self.found.triangles)
         self.gpu.context.finish()
         self.extract_ms = 1e3 * (time.perf_counter() - started)

@@ -12,6 +12,8 @@ from viewer.engine.camera import OrbitCamera
 from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.frame import FrameBlock
 from viewer.engine.gpu import Gpu
+from viewer.engine.inscriptions import Inscription
+from viewer.engine.lettering import Lettering
 from viewer.engine.picture import Picture
 from viewer.engine.scene import Scene, Studio
 from viewer.engine.shaders import ShaderError, ShaderFolders
@@ -20,7 +22,7 @@ from viewer.engine.studio import StudioSet
 
 
 class Painter:
-    """Owns what is drawn with and into, apart from the scene's own: frame block, set and picture."""
+    """Owns what is drawn with and into, apart from the scene's own: frame block, set, picture and labels."""
 
     def __init__(self, context: moderngl.Context, shaders: ShaderFolders, plan: Studio, size: tuple[int, int],
                  samples: int) -> None:
@@ -28,6 +30,7 @@ class Painter:
         self._set_arena = Gpu(context, shaders)
         self._picture_arena = Gpu(context, shaders)
         self._block = FrameBlock(context)
+        self._lettering = Lettering(context, shaders)
         self._shadow_shows: Hashable = None
         try:
             self.studio = StudioSet(self._set_arena, plan)
@@ -37,8 +40,12 @@ class Painter:
             raise
 
     def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None],
-              middle: tuple[float, float] = (0.0, 0.0)) -> None:
-        """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour."""
+              draw_over: Callable[[], None], middle: tuple[float, float] = (0.0, 0.0),
+              labels: Callable[[], tuple[Inscription, ...]] = tuple) -> None:
+        """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour.
+
+        ``draw_over`` comes after the set; what ``labels`` gives after that is lettered over the finished picture.
+        """
         self._cast_shadow(scene, frame, draw)
         self.set_moment(camera, frame, middle)
         self.picture.begin()
@@ -46,11 +53,20 @@ class Painter:
         self.studio.shadow.bind()
         try:
             draw()
+            inscriptions = labels()
         finally:
             plain_state(self.context)
         self.picture.go_on()
         self.studio.draw()
+        plain_state(self.context)
+        try:
+            draw_over()
+        finally:
+            plain_state(self.context)
+        self.picture.go_on()
+        self._lettering.compose(inscriptions, self.picture.size)
         self.picture.finish()
+        self._lettering.draw()
 
     def set_moment(self, camera: OrbitCamera, frame: int, middle: tuple[float, float] = (0.0, 0.0)) -> None:
         """Write the frame block for ``camera`` at ``frame``, so that shaders may run."""
@@ -85,17 +101,19 @@ class Painter:
 
     def refresh(self) -> ShaderError | None:
         """Take over edited shader files of the set; returns the error that stands, if any."""
-        return self._set_arena.refresh() or self._picture_arena.refresh()
+        return self._set_arena.refresh() or self._picture_arena.refresh() or self._lettering.refresh()
 
     def release(self) -> None:
         """Free everything on the GPU."""
         self._set_arena.release()
         self._picture_arena.release()
+        self._lettering.release()
         self._block.release()
 
     def showing(self, scene: Scene, camera: OrbitCamera, frame: int) -> Hashable:
         """Everything that a picture depends on: while this stays equal, drawing again would change nothing."""
-        return (self.scene_showing(scene, frame), camera.look, self.picture, self._picture_arena.generation)
+        return (self.scene_showing(scene, frame), camera.look, self.picture, self._picture_arena.generation,
+                self._lettering.generation)
 
     def scene_showing(self, scene: Scene, frame: int) -> Hashable:
         """Everything that the scene and its shadow depend on; the frame counts only where time moves it."""

@@ -9,16 +9,14 @@ nobody declared becomes a slider of its own for as long as the formula uses it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any, ClassVar, TypeAlias
 
-from viewer.engine.color_field import Color
+from viewer.engine.conditions import Condition, conditions_of
 from viewer.engine.fields import Field, ParameterError, Uniform, nearest
-from viewer.engine.file_field import File
 from viewer.engine.formula_field import FormulaField
-from viewer.engine.number_fields import FormulaSlider, Integer, Interval, Slider
-from viewer.engine.word_fields import Choice, Text, Toggle
+from viewer.engine.number_fields import FormulaSlider, Integer, Slider
+from viewer.engine.word_fields import Toggle
 from viewer.kit.formula import Formula
 
 Snapshot: TypeAlias = tuple[dict[str, Any], dict[str, Field[Any]]]
@@ -31,6 +29,7 @@ class Parameters:
     """
 
     declared: ClassVar[dict[str, Field[Any]]] = {}
+    _conditions: ClassVar[dict[str, Condition]] = {}
 
     def __init_subclass__(cls) -> None:
         own = {name: field for name, field in vars(cls).items() if isinstance(field, Field)}
@@ -38,6 +37,7 @@ class Parameters:
         if taken:
             raise ParameterError(f"{taken[0]} cannot name a parameter: Parameters already uses it")
         cls.declared = {**cls.declared, **own}
+        cls._conditions = conditions_of(cls.declared)
 
     def __init__(self, values: Mapping[str, object] | None = None, *, seed: int = 0) -> None:
         self.seed = seed
@@ -121,6 +121,22 @@ class Parameters:
         field = self.field(name)
         return not _differs(field, field.default, self.get(name))
 
+    def is_active(self, name: str) -> bool:
+        """Whether a parameter now has any effect, as far as its declaration tells; it can be set all the same."""
+        if name in self._born:
+            return any(self.is_active(formula) for formula in self.formulas_with(name))
+        return all(term.holds(self._values) for term in self.condition(name))
+
+    def condition(self, name: str) -> Condition:
+        """What has to hold for a declared parameter to have any effect; empty where it always has one."""
+        self.field(name)
+        return self._conditions.get(name, ())
+
+    def formulas_with(self, variable: str) -> list[str]:
+        """The formulas, by name, that mention ``variable``."""
+        formulas = [name for name, field in self.declared.items() if isinstance(field, FormulaField)]
+        return [name for name in formulas if variable in self.get(name).variables]
+
     def stored(self) -> dict[str, Any]:
         """Every value as a preset holds it."""
         return {name: field.stored(self.get(name)) for name, field in self.fields.items()}
@@ -160,59 +176,8 @@ def _fields_from_formulas(declared: Mapping[str, Field[Any]], values: Mapping[st
             if variable in field.variables or variable in born:
                 continue
             if variable not in declared:
-                born[variable] = FormulaSlider(variable, name)
+                born[variable] = FormulaSlider(variable, name).placed(field.group, field.when)
             elif not isinstance(declared[variable], (Slider, Integer, Toggle)):
                 kind = declared[variable].kind
                 raise ParameterError(f"{name}: {variable} is a {kind}; a formula takes numbers only")
     return born
-
-
-# The declarations below are typed as the values they hold, so that a scene's own code type-checks.
-
-def slider(default: float, minimum: float, maximum: float, help: str, *, unit: str = "",
-           logarithmic: bool = False, rebuild: bool = False) -> Any:
-    """A real number from ``minimum`` to ``maximum``; ``logarithmic`` suits ranges over decades."""
-    return Slider(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic, rebuild=rebuild)
-
-
-def integer(default: int, minimum: int, maximum: int, help: str, *, unit: str = "",
-            logarithmic: bool = False, rebuild: bool = False) -> Any:
-    """A whole number from ``minimum`` to ``maximum``."""
-    return Integer(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic, rebuild=rebuild)
-
-
-def interval(default: tuple[float, float], minimum: float, maximum: float, help: str, *, unit: str = "",
-             logarithmic: bool = False, rebuild: bool = False) -> Any:
-    """A range inside ``minimum`` to ``maximum``, as a pair."""
-    return Interval(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic, rebuild=rebuild)
-
-
-def toggle(default: bool, help: str, *, rebuild: bool = False) -> Any:
-    """A yes or no."""
-    return Toggle(default, help, rebuild=rebuild)
-
-
-def choice(default: str, options: Sequence[str] | Mapping[str, str], help: str, *, rebuild: bool = False) -> Any:
-    """One of several names; a mapping gives each name a sentence. In shaders: its index, an int."""
-    return Choice(default, options, help, rebuild=rebuild)
-
-
-def color(default: str, help: str, *, rebuild: bool = False) -> Any:
-    """A colour, declared as ``"#ff8800"`` and read as sRGB in 0 to 1; in shaders a linear vec3."""
-    return Color(default, help, rebuild=rebuild)
-
-
-def text(default: str, help: str, *, longest: int = 200, rebuild: bool = False) -> Any:
-    """A line of text of at most ``longest`` characters."""
-    return Text(default, help, longest=longest, rebuild=rebuild)
-
-
-def formula(default: str, help: str, *, variables: Sequence[str] = ("x", "y", "z", "t"),
-            rebuild: bool = False) -> Any:
-    """An editable function of ``variables``; read as a ``viewer.kit.formula.Formula``."""
-    return FormulaField(default, help, variables=variables, rebuild=rebuild)
-
-
-def file(default: str | Path | None, help: str, *, suffixes: Sequence[str] = (), rebuild: bool = True) -> Any:
-    """An existing file with one of ``suffixes``, or None; read as a ``pathlib.Path``."""
-    return File(None if default is None else str(default), help, suffixes=suffixes, rebuild=rebuild)

@@ -26,6 +26,7 @@ from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.color_field import Color
 from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
+from viewer.engine.matrices import Matrix
 from viewer.engine.params import Parameters
 from viewer.errors import DemoscopeError
 
@@ -144,6 +145,8 @@ class Scene:
     gpu: Gpu
     params: Any
     reads_time: bool = False
+    view: Matrix = np.eye(4)        # world to camera, for what has to face the camera
+    aspect: float = 1.0             # the picture's width over its height
     _frame: int = 0
 
     def __init__(self, gpu: Gpu, params: Any) -> None:
@@ -177,6 +180,10 @@ class Scene:
         """Tell the scene which frame it is; the stage does."""
         self._frame = frame
 
+    def look(self, view: Matrix, aspect: float) -> None:
+        """Tell the scene how it is looked at; the stage does."""
+        self.view, self.aspect = view, aspect
+
     def update(self, dt: float) -> None:
         """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""
 
@@ -189,6 +196,9 @@ class Scene:
     def draw(self) -> None:
         """Draw. Called for the shadow map and for the picture; changes nothing that is simulated."""
         raise NotImplementedError(f"{type(self).__name__} has no draw()")
+
+    def draw_over(self) -> None:
+        """Draw what comes after the set, in colour only: what one sees through, and cards in the picture."""
 
     def geometry(self) -> Geometry:
         """What the GPU made for this frame, as named arrays."""

@@ -15,6 +15,7 @@ from viewer.engine.catalog import SceneEntry, scene_error
 from viewer.engine.clock import FRAME_SECONDS, Clock, checked_frame
 from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
+from viewer.engine.inscriptions import checked_labels
 from viewer.engine.painter import Painter
 from viewer.engine.params import Parameters
 from viewer.engine.picture import Picture, checked_size
@@ -140,7 +141,9 @@ class Stage:
         """Draw the current frame into the picture."""
         self._prepare()
         self.painter.paint(self.scene, self.camera, self.clock.frame,
-                           lambda: self._guard("failed in draw", self.scene.draw), self._middle())
+                           lambda: self._guard("failed in draw", self.scene.draw),
+                           lambda: self._guard("failed in draw_over", self.scene.draw_over), self._middle(),
+                           lambda: self._guard("failed in labels", lambda: checked_labels(self.scene.labels())))
 
     def pixels(self) -> NDArray[np.uint8]:
         """The current frame drawn: uint8 (height, width, 4), top row first."""
@@ -285,6 +288,7 @@ class Stage:
             raise
 
     def _prepare(self) -> None:
+        self.scene.look(self.camera.view(), self.size[0] / self.size[1])
         self._off_screen("failed in prepare", self.scene.prepare)
 
     def _middle(self) -> tuple[float, float]:

@@ -7,7 +7,7 @@ crossed edges and the cells around them are left.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import TypeAlias
 
@@ -110,6 +110,28 @@ def cells_touching(samples: Words, grid: Grid) -> Words:
     for direction in (1, 2, 4):
         touched = touched | moved_down(touched, grid.offset(direction))
     return touched & has_neighbour(grid, CELL)
+
+
+def ambiguous_face_count(signs: Words, grid: Grid, left_out: Words | None = None) -> int:
+    """How many faces of cells have two opposite corners inside and two outside; ``left_out`` tells which samples
+    do not count, nor faces with them."""
+    total = 0
+    for first, second in ((1, 2), (2, 4), (4, 1)):
+        across = moved_down(signs, grid.offset(first)), moved_down(signs, grid.offset(second))
+        opposite = moved_down(signs, grid.offset(first | second))
+        found = ~(signs ^ opposite) & ~(across[0] ^ across[1]) & (signs ^ across[0])
+        found &= has_neighbour(grid, first | second)
+        if left_out is not None:
+            for step in (0, first, second, first | second):
+                found &= ~moved_down(left_out, grid.offset(step))
+        total += int(np.bitwise_count(found).sum())
+    return total
+
+
+def in_order(found: Topology) -> Topology:
+    """The same surface with its triangles sorted by cell."""
+    order = np.argsort(found.owners, kind="stable")
+    return replace(found, triangles=found.triangles[order], owners=found.owners[order])
 
 
 def cell_cases(inside: Bytes, grid: Grid, cells: Index) -> Bytes:

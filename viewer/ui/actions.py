@@ -73,6 +73,7 @@ ACTIONS: tuple[Action, ...] = (
 )
 
 MOUSE = (
+    ("Click", "Choose what is under the mouse, where a scene lets you"),
     ("Left drag", "Turn the camera"),
     ("Right, Shift+drag", "Move the camera"),
     ("Wheel, two fingers", "Come closer, go back"),

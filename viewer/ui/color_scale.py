@@ -22,7 +22,7 @@ def draw_color_scale(scale: ColorScale, box: Box) -> None:
         return
     left, bottom = box.x + 2.0 * MARGIN_EMS * em, box.y + box.height - MARGIN_EMS * em
     behind = imgui.get_background_draw_list()
-    plate = imgui.get_color_u32(imgui.ImVec4(*theme.rgb("#16181c", 0.8)))
+    plate = imgui.get_color_u32(imgui.ImVec4(*theme.PLATE))
     pad = 0.7 * em
     behind.add_rect_filled(imgui.ImVec2(left - pad, bottom - 3.9 * em), imgui.ImVec2(left + width + pad, bottom),
                            plate, 0.4 * em)

@@ -71,4 +71,6 @@ def _line(keys: str, title: str) -> None:
     imgui.pop_style_color()
     imgui.same_line()
     imgui.set_cursor_pos_x(start + KEY_EMS * imgui.get_font_size())
+    imgui.push_text_wrap_pos(start + COLUMN_EMS * imgui.get_font_size())
     imgui.text_unformatted(title)
+    imgui.pop_text_wrap_pos()

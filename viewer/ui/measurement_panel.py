@@ -10,6 +10,7 @@ from imgui_bundle import imgui, implot
 from viewer.ui import theme
 from viewer.ui.guard import show_failure
 from viewer.ui.measurer import Plot
+from viewer.ui.table_view import TableView
 from viewer.ui.typography import heading
 
 if TYPE_CHECKING:
@@ -29,9 +30,10 @@ class MeasurementPanel:
 
     def __init__(self, bench: Workbench) -> None:
         self.bench = bench
+        self._tables = TableView(bench.session.fonts)
 
     def draw(self) -> None:
-        """Readouts, then plots."""
+        """Readouts, then tables, then plots."""
         measurer = self.bench.measurer
         if measurer is None:
             return
@@ -40,10 +42,12 @@ class MeasurementPanel:
         report = measurer.report
         if report is None:
             return
-        if not report.readouts and not report.plots:
+        if not report.readouts and not report.tables and not report.plots:
             imgui.text_disabled("This scene measures nothing")
         for name, value in report.readouts:
             self._readout(name, value)
+        for table in report.tables:
+            self._tables.draw(table)
         for plot in report.plots:
             self._plot(plot)
 

@@ -11,6 +11,7 @@ from viewer.engine.formula_field import FormulaField
 from viewer.engine.number_fields import FormulaSlider
 from viewer.ui import theme
 from viewer.ui.guard import one_line, show_failure
+from viewer.ui.parameter_groups import Folds, Group, grouped
 from viewer.ui.typed_fields import TypedFields
 from viewer.ui.typography import fitted, heading, icon_button, tooltip
 from viewer.ui.widgets import WIDGETS, draw_value, explain, label
@@ -32,14 +33,18 @@ class ParameterPanel:
         self._errors: dict[str, tuple[str, int]] = {}
         self._texts: dict[tuple[str, int, float], str] = {}
         self._looked_at: object = None
-        self._rows: list[Field[Any]] = []
+        self._groups: list[Group] = []
         self._changed: set[str] = set()
+        self._idle: set[str] = set()
+        self._heights: dict[str, float] = {}
+        self._folds = Folds()
 
     def forget(self) -> None:
         """Another stage is on, or everything was reset."""
         self._typed = TypedFields(self.bench)
         self._errors.clear()
         self._texts.clear()
+        self._heights.clear()
         self._looked_at = None
 
     def draw(self) -> None:
@@ -50,18 +55,39 @@ class ParameterPanel:
         self._look(stage)
         self._title(stage)
         width = imgui.get_content_region_avail().x
-        for field in self._rows:
-            imgui.push_id(field.name)
-            self._row(stage, field, width)
-            imgui.pop_id()
+        for group in self._groups:
+            if group.title and not self._heading(stage, group):
+                continue
+            for field in group.fields:
+                if not self._scrolled_away(field, width):
+                    self._draw_row(stage, field, width)
+
+    def _scrolled_away(self, field: Field[Any], width: float) -> bool:
+        """Whether a row is out of sight, and then leave room for it; one under a hand or typed in is drawn anyway."""
+        size = imgui.ImVec2(width, self._heights.get(field.name, 0.0))
+        if not size.y or field.kind not in WIDGETS or self.bench.panels.hand_on_widget or imgui.is_rect_visible(size):
+            return False
+        imgui.dummy(size)
+        return True
+
+    def _draw_row(self, stage: Stage, field: Field[Any], width: float) -> None:
+        top = imgui.get_cursor_pos_y()
+        imgui.push_id(field.name)
+        imgui.begin_disabled(field.name in self._idle)
+        self._row(stage, field, width)
+        imgui.end_disabled()
+        imgui.pop_id()
+        self._heights[field.name] = imgui.get_cursor_pos_y() - top - imgui.get_style().item_spacing.y
 
     def _look(self, stage: Stage) -> None:
-        """Find out what the rows are and which differ from the default, when something has changed."""
+        """Find out what the rows are, which differ from the default and which now have no effect."""
         state = id(stage.params), stage.params.revision
         if state != self._looked_at:
             self._looked_at = state
-            self._rows = self._in_order(stage)
-            self._changed = {field.name for field in self._rows if not stage.params.is_default(field.name)}
+            self._groups = grouped(stage.params)
+            names = list(stage.params.fields)
+            self._changed = {name for name in names if not stage.params.is_default(name)}
+            self._idle = {name for name in names if not stage.params.is_active(name)}
 
     def _title(self, stage: Stage) -> None:
         heading("Parameters", self.bench.session.fonts)
@@ -71,20 +97,9 @@ class ParameterPanel:
             if imgui.small_button("Reset all"):
                 self.bench.reset()
 
-    @staticmethod
-    def _in_order(stage: Stage) -> list[Field[Any]]:
-        """Declared order, with the sliders that a formula gave rise to right under it."""
-        ordered: list[Field[Any]] = []
-        fields = list(stage.params.fields.values())
-        for field in fields:
-            if isinstance(field, FormulaSlider):
-                continue
-            ordered.append(field)
-            if isinstance(field, FormulaField):
-                variables = set(stage.params.get(field.name).variables)
-                ordered += [each for each in fields if isinstance(each, FormulaSlider) and each.name in variables
-                            and each not in ordered]
-        return ordered
+    def _heading(self, stage: Stage, group: Group) -> bool:
+        imgui.dummy(imgui.ImVec2(0, 0))
+        return self._folds.heading(stage.entry.name, group.title, self.bench.session.fonts, idle=group.idle)
 
     def _row(self, stage: Stage, field: Field[Any], width: float) -> None:
         value, reset = stage.params.get(field.name), RESET_EMS * imgui.get_font_size()
@@ -92,18 +107,18 @@ class ParameterPanel:
         start = imgui.get_cursor_pos_x()
         beside = width if own_line else LABEL_SHARE * width
         resettable = field.name in self._changed or self._typed.wrong(field.name)
-        self._label(field, beside - (reset if resettable else 0.0) - 0.3 * imgui.get_font_size())
+        self._label(stage, field, beside - (reset if resettable else 0.0) - 0.3 * imgui.get_font_size())
         if resettable:
             self._reset(stage, field, start + beside - reset)
         if own_line:
             self._typed.draw(field, value, width)
-            tooltip(lambda: explain(field))
+            tooltip(lambda: self._explained(stage, field))
             return
         imgui.same_line(start + LABEL_SHARE * width)
         room = (1.0 - LABEL_SHARE) * width
         if field.kind in WIDGETS:
             new = draw_value(field, value, room)
-            tooltip(lambda: explain(field))
+            tooltip(lambda: self._explained(stage, field))
             if new is not None:
                 self._set(stage, field, new)
         else:
@@ -112,13 +127,21 @@ class ParameterPanel:
             imgui.end_group()
         self._show_error(stage, field)
 
-    def _label(self, field: Field[Any], width: float) -> None:
+    def _label(self, stage: Stage, field: Field[Any], width: float) -> None:
         key = field.name, round(width), imgui.get_font_size()
         if key not in self._texts:
             self._texts[key] = fitted(label(field.name), width)
         imgui.align_text_to_frame_padding()
         imgui.text_unformatted(self._texts[key])
-        tooltip(lambda: f"{label(field.name)}\n{explain(field)}")
+        tooltip(lambda: f"{label(field.name)}\n{self._explained(stage, field)}")
+
+    def _explained(self, stage: Stage, field: Field[Any]) -> str:
+        """What there is to say of a parameter, and first of all why it is grey."""
+        if field.name not in self._idle:
+            return explain(field)
+        declared = stage.params.formulas_with(field.name)[0] if isinstance(field, FormulaSlider) else field.name
+        terms = [term.words() for term in stage.params.condition(declared)]
+        return f"Has an effect only where {' and '.join(terms)}\n{explain(field)}"
 
     def _reset(self, stage: Stage, field: Field[Any], x: float) -> None:
         imgui.same_line(x)

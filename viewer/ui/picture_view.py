@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from viewer.errors import DemoscopeError
 from viewer.ui import theme
 from viewer.ui.color_scale import draw_color_scale
 from viewer.ui.layout import Box
+from viewer.ui.remark_plate import RemarkPlate
 
 if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 LEFT, RIGHT, MIDDLE = 0, 1, 2
+CLICK_EMS = 0.25        # a hand that moves no farther means a click
 
 
 class PictureView:
-    """Shows the finished picture behind all panels; the mouse is the camera's wherever no panel is."""
+    """Shows the finished picture behind all panels; the mouse is the camera's and the scene's wherever no panel is."""
 
     def __init__(self, bench: Workbench) -> None:
         self.bench = bench
+        self._plate = RemarkPlate()
         self._dragging: int | None = None
+        self._dragged_to = (0.0, 0.0)
+        self._pressed_at: tuple[float, float] | None = None     # while it may still become a click
 
     def draw(self) -> None:
         """Show the picture and move the camera."""
@@ -38,6 +45,8 @@ class PictureView:
         scale = self.bench.live.color_scale() if self.bench.live else None
         if scale:
             draw_color_scale(scale, box)
+        if self.bench.remarker and not self.bench.problem:
+            self._plate.draw(self.bench.remarker.remarks, box)
         self._move_camera()
 
     def _move_camera(self) -> None:
@@ -51,22 +60,50 @@ class PictureView:
                 camera.reset()
             for button in (LEFT, RIGHT, MIDDLE):
                 if self._dragging is None and imgui.is_mouse_clicked(button):
-                    self._dragging = button
+                    self._press(button)
+
+    def _press(self, button: int) -> None:
+        io = imgui.get_io()
+        self._dragging, self._dragged_to = button, (io.mouse_pos.x, io.mouse_pos.y)
+        plain = button == LEFT and not io.key_mods and not imgui.is_mouse_double_clicked(LEFT)
+        self._pressed_at = self._dragged_to if plain else None
 
     def _drag(self, box: Box) -> None:
         """Follow the mouse since the button went down, up to and including the frame in which it comes up."""
         if self._dragging is None:
             return
-        assert self.bench.stage
-        io, camera = imgui.get_io(), self.bench.stage.camera
-        if io.mouse_delta.x or io.mouse_delta.y:
-            right, down = io.mouse_delta.x / box.height, io.mouse_delta.y / box.height
-            if self._dragging != LEFT or io.key_shift:
-                camera.pan(right, down, box.width / box.height)
-            else:
-                camera.drag(right, down)
+        io = imgui.get_io()
+        here, (x, y) = (io.mouse_pos.x, io.mouse_pos.y), self._dragged_to
+        if self._pressed_at and math.dist(here, self._pressed_at) >= CLICK_EMS * imgui.get_font_size():
+            self._pressed_at = None
+        if here != (x, y) and not self._pressed_at:     # what may become a click leaves the camera alone
+            self._turn((here[0] - x) / box.height, (here[1] - y) / box.height, box)
+            self._dragged_to = here
         if not imgui.is_mouse_down(self._dragging):
             self._dragging = None
+            if self._pressed_at:
+                self._click(*self._pressed_at)
+
+    def _turn(self, right: float, down: float, box: Box) -> None:
+        assert self.bench.stage
+        camera = self.bench.stage.camera
+        if self._dragging != LEFT or imgui.get_io().key_shift:
+            camera.pan(right, down, box.width / box.height)
+        else:
+            camera.drag(right, down)
+
+    def _click(self, x: float, y: float) -> None:
+        """Set what the scene takes a click there for, as one step of the history."""
+        stage, box = self.bench.stage, self.bench.layout.picture
+        assert stage
+        width, height = stage.size
+        try:
+            values = stage.clicked((x - box.x) * width / box.width, (y - box.y) * height / box.height)
+            refused = self.bench.change("click", values) if values else None
+        except DemoscopeError as error:
+            refused = error
+        if refused:
+            self.bench.tell(refused)
 
     def _over(self) -> bool:
         box, mouse = self.bench.layout.picture, imgui.get_mouse_pos()

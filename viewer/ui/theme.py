@@ -26,9 +26,11 @@ def rgb(code: str, alpha: float = 1.0) -> Rgba:
 
 
 PANEL = rgb("#1b1d20")
+HEADING = rgb("#23262a")       # behind the title of what can be folded
 WELL = rgb("#2a2d32")          # what holds a value: sliders, inputs, plots
 WELL_HOVERED = rgb("#34383e")
 WELL_ACTIVE = rgb("#3c4148")
+PLATE = rgb("#16181c", 0.8)    # behind words in the picture
 LINE = rgb("#3a3e45")
 TEXT = rgb("#eceef0")
 QUIET_TEXT = rgb("#a9afb8")
@@ -117,7 +119,9 @@ def _colors() -> dict[int, Rgba]:
         role.menu_bar_bg: rgb("#141619"), role.scrollbar_bg: rgb("#000000", 0.0), role.scrollbar_grab: WELL_ACTIVE,
         role.tab: PANEL, role.tab_hovered: WELL_HOVERED, role.tab_selected: WELL,
         role.tab_selected_overline: ACCENT, role.text_selected_bg: ACCENT_DEEP, role.plot_lines: ACCENT,
-        role.plot_histogram: ACCENT_DEEP, role.modal_window_dim_bg: rgb("#000000", 0.45),
+        role.table_header_bg: HEADING, role.table_border_light: LINE, role.table_row_bg: rgb("#000000", 0.0),
+        role.table_row_bg_alt: rgb("#ffffff", 0.05), role.plot_histogram: ACCENT_DEEP,
+        role.modal_window_dim_bg: rgb("#000000", 0.45),
         role.text_link: ACCENT, role.nav_cursor: ACCENT,
     }
 

@@ -57,3 +57,15 @@ def fitted(text: str, width: float) -> str:
     while text and imgui.calc_text_size(text + "…").x > width:
         text = text[:-1]
     return text.rstrip() + "…"
+
+
+def wrapped(text: str, width: float) -> list[str]:
+    """``text`` in lines of at most ``width``, parted between words."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".lstrip()
+        if lines[-1] and imgui.calc_text_size(longer).x > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines

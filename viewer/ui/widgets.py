@@ -20,8 +20,9 @@ MOST_SEGMENTS = 4
 LOGARITHMIC = int(imgui.SliderFlags_.logarithmic)
 ALWAYS_CLAMP = int(imgui.SliderFlags_.always_clamp)
 
-BAR_COLORS = [imgui.color_convert_float4_to_u32(imgui.ImVec4(*color))
-              for color in (theme.WELL, theme.ACCENT_DEEP, theme.ACCENT)]
+BAR_COLORS, IDLE_BAR_COLORS = [[imgui.color_convert_float4_to_u32(imgui.ImVec4(*color)) for color in colors]
+                               for colors in ((theme.WELL, theme.ACCENT_DEEP, theme.ACCENT),
+                                              (theme.HEADING, theme.WELL_HOVERED, theme.WELL_ACTIVE))]
 BAR_GLOW = [(int(role), imgui.ImVec4(1, 1, 1, alpha)) for role, alpha in (
     (imgui.Col_.frame_bg, 0.0), (imgui.Col_.frame_bg_hovered, 0.06), (imgui.Col_.frame_bg_active, 0.1),
     (imgui.Col_.slider_grab, 0.0), (imgui.Col_.slider_grab_active, 0.0))]
@@ -132,7 +133,7 @@ def begin_bar(filled: float, width: float) -> None:
     """Draw a bar filled so far, over which ImGui's slider writes the value; its own grab would hide that."""
     low, height, round_by = imgui.get_cursor_screen_pos(), imgui.get_frame_height(), imgui.get_style().frame_rounding
     edge, thin, draw = low.x + filled * width, max(1.0, 0.12 * imgui.get_font_size()), imgui.get_window_draw_list()
-    color = BAR_COLORS
+    color = BAR_COLORS if imgui.get_style().alpha == 1.0 else IDLE_BAR_COLORS
     draw.add_rect_filled(low, imgui.ImVec2(low.x + width, low.y + height), color[0], round_by)
     draw.add_rect_filled(low, imgui.ImVec2(edge, low.y + height), color[1], round_by)
     at = min(max(low.x, edge - thin), low.x + width - thin)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 import moderngl
 
@@ -16,6 +15,7 @@ from viewer.engine.catalog import Catalog, SceneEntry
 from viewer.engine.stage import Stage
 from viewer.errors import DemoscopeError
 from viewer.ui import actions, screenshot
+from viewer.ui.editor import Editor
 from viewer.ui.guard import one_line
 from viewer.ui.history import History
 from viewer.ui.imgui_session import ImguiSession, Surface
@@ -25,9 +25,7 @@ from viewer.ui.measurer import Measurer
 from viewer.ui.pace import Pace
 from viewer.ui.panels import Panels
 from viewer.ui.picture_view import PictureView
-
-if TYPE_CHECKING:
-    from viewer.engine.presets import Preset
+from viewer.ui.remarker import Remarker
 
 TOAST_SECONDS = 5.0
 LONGEST_WALL_STEP = 0.25
@@ -35,11 +33,12 @@ LONGEST_WALL_STEP = 0.25
 cpu_seconds = time.thread_time if time.get_clock_info("thread_time").resolution < 1e-4 else time.perf_counter
 
 
-class Workbench:
+class Workbench(Editor):
     """Shows one stage at a time. With ``steady`` everything that a wall clock would change stands still."""
 
     def __init__(self, context: moderngl.Context, catalog: Catalog, *, samples: int = 4, seed: int = 0,
                  steady: bool = False) -> None:
+        super().__init__()
         self.context = context
         self.catalog = catalog
         self.samples, self.seed, self.steady = samples, seed, steady
@@ -47,7 +46,7 @@ class Workbench:
         self.entries: list[SceneEntry] = catalog.entries()
         self.live: LiveStage | None = None
         self.measurer: Measurer | None = None
-        self.history = History()
+        self.remarker: Remarker | None = None
         self.notice: Problem | None = None
         self.toast = ""
         self.pace = Pace()
@@ -70,6 +69,11 @@ class Workbench:
         """The stage that is on, if any."""
         return self.live.stage if self.live else None
 
+    @property
+    def problem(self) -> Problem | None:
+        """What the banners over the picture say, if anything."""
+        return (self.live.problem if self.live else None) or self.notice
+
     def open(self, name: str, params: Mapping[str, object] | None = None) -> bool:
         """Put another scene on; the present one stays, with a message, if that one cannot be built."""
         try:
@@ -91,6 +95,7 @@ class Workbench:
         former, former_borrowed = self.live, self._borrowed
         self.live, self._borrowed = LiveStage(stage, self._query), borrowed
         self.measurer = Measurer(stage, patient=not self.steady)
+        self.remarker = Remarker(stage, patient=not self.steady)
         self.history = History()
         self.notice = None
         self.panels.stage_changed()
@@ -98,39 +103,11 @@ class Workbench:
         if former and not former_borrowed:
             former.release()
 
-    # Changes
-
-    def change(self, subject: str, values: Mapping[str, object]) -> DemoscopeError | None:
-        """Set parameters as one step of the history; returns the error instead of raising it."""
-        assert self.stage
-        stage = self.stage
-        return self._remembered(subject, lambda: stage.update_params(values))
-
     def reset(self, name: str | None = None) -> DemoscopeError | None:
-        """Set one parameter, or all, to the default."""
-        if not self.stage:
-            return None
-        stage = self.stage
-        if name is None:
+        """Set one parameter, or all and forget what was typed, to the default."""
+        if name is None and self.stage:
             self.panels.stage_changed()
-        return self._remembered(f"reset {name}", lambda: stage.reset_params(name))
-
-    def apply_preset(self, preset: Preset) -> None:
-        """Take over a preset's values and camera."""
-        if not self.stage:
-            return
-        stage = self.stage
-        error = self._remembered(f"preset {preset.name}", lambda: stage.apply_preset(preset))
-        if error:
-            self.tell(error)
-
-    def undo(self) -> None:
-        """Take the last change back."""
-        self._restore(self.history.undo())
-
-    def redo(self) -> None:
-        """Make the change that was taken back again."""
-        self._restore(self.history.redo())
+        return super().reset(name)
 
     # Time and camera
 
@@ -194,10 +171,7 @@ class Workbench:
             self.live.advance(min(seconds, LONGEST_WALL_STEP))
         self.surface = surface
         building = self._build_panels(seconds, surface)
-        if self.live and self.measurer and self.panels.measurements_visible:
-            self.measurer.run(dragging=self.panels.hand_on_widget)
-        if self.live and self.layout.picture.shown:
-            self.live.render()
+        self._observe()
         surface.target.use()
         surface.target.clear(0.0, 0.0, 0.0, 1.0)
         started = cpu_seconds()
@@ -237,6 +211,14 @@ class Workbench:
         self.session.frame(surface, passed, self.view.scale, self._draw_panels)
         return cpu_seconds() - started if scene == self._scene_state() else None
 
+    def _observe(self) -> None:
+        """Measure, ask for remarks and draw the picture, as far as any of it shows."""
+        if self.measurer and self.panels.measurements_visible:
+            self.measurer.run(dragging=self.panels.hand_on_widget)
+        if self.live and self.remarker and self.layout.picture.shown:
+            self.remarker.run(dragging=self.panels.hand_on_widget)
+            self.live.render()
+
     def _scene_state(self) -> object:
         stage = self.stage
         return (stage.params.revision, stage.size, stage.frame) if stage else None
@@ -255,23 +237,3 @@ class Workbench:
         box, surface = self.layout.picture, self.surface
         ratio = surface.pixel_ratio if surface else (1.0, 1.0)
         return max(1, round(box.width * ratio[0])), max(1, round(box.height * ratio[1]))
-
-    def _remembered(self, subject: str, work: Callable[[], object]) -> DemoscopeError | None:
-        assert self.stage
-        before = self.stage.params.stored()
-        try:
-            work()
-        except DemoscopeError as error:
-            return error
-        after = self.stage.params.stored()
-        if after != before:
-            self.history.record(subject, before, after)
-        return None
-
-    def _restore(self, values: Mapping[str, object] | None) -> None:
-        if values is None or not self.stage:
-            return
-        try:
-            self.stage.update_params(values)
-        except DemoscopeError as error:
-            self.tell(error)
