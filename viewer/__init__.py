@@ -22,9 +22,12 @@ if TYPE_CHECKING:
         text,
         toggle,
     )
+    from viewer.engine.field_samples import FieldSamples, Lattice
     from viewer.engine.fields import ParameterError
     from viewer.engine.formula_shader import formula_include
     from viewer.engine.gpu import Gpu
+    from viewer.engine.insets import Insets
+    from viewer.engine.isosurface import Isosurface, Wanted
     from viewer.engine.params import Parameters
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.stage import Stage
@@ -38,9 +41,13 @@ __all__ = [
     "ColorScale",
     "Curve",
     "DemoscopeError",
+    "FieldSamples",
     "Geometry",
     "Gpu",
+    "Insets",
+    "Isosurface",
     "Label",
+    "Lattice",
     "Measurements",
     "Orbit",
     "ParameterError",
@@ -49,6 +56,7 @@ __all__ = [
     "Stage",
     "Studio",
     "Table",
+    "Wanted",
     "choice",
     "color",
     "file",
@@ -65,7 +73,8 @@ __all__ = [
 
 # Where they live, the first that has a name being its home.
 _HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
-          "engine.gpu", "engine.formula_shader", "engine.scene", "engine.stage", "output.headless")
+          "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.isosurface", "engine.insets",
+          "engine.scene", "engine.stage", "output.headless")
 
 
 def __getattr__(name: str) -> Any:

@@ -20,10 +20,14 @@ from viewer.engine.word_fields import Choice, Text, Toggle
 
 
 def slider(default: float, minimum: float, maximum: float, help: str, *, unit: str = "",
-           logarithmic: bool = False, rebuild: bool = False, group: str = "", when: str = "") -> Any:
-    """A real number from ``minimum`` to ``maximum``; ``logarithmic`` suits ranges over decades."""
-    return Slider(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic,
-                  rebuild=rebuild).placed(group, when)
+           logarithmic: bool = False, rebuild: bool = False, handy: tuple[float, float] | None = None,
+           group: str = "", when: str = "") -> Any:
+    """A real number from ``minimum`` to ``maximum``; ``logarithmic`` suits ranges over decades.
+
+    ``handy`` is the part of the range that the slider on screen offers; typing reaches the rest.
+    """
+    return Slider(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic, rebuild=rebuild,
+                  handy=handy).placed(group, when)
 
 
 def integer(default: int, minimum: int, maximum: int, help: str, *, unit: str = "",
@@ -56,9 +60,10 @@ def color(default: str, help: str, *, rebuild: bool = False, group: str = "", wh
     return Color(default, help, rebuild=rebuild).placed(group, when)
 
 
-def text(default: str, help: str, *, longest: int = 200, rebuild: bool = False, group: str = "", when: str = "") -> Any:
-    """A line of text of at most ``longest`` characters."""
-    return Text(default, help, longest=longest, rebuild=rebuild).placed(group, when)
+def text(default: str, help: str, *, longest: int = 200, pattern: str = "", example: str = "",
+         rebuild: bool = False, group: str = "", when: str = "") -> Any:
+    """A line of text of at most ``longest`` characters: where there is a ``pattern``, empty or like ``example``."""
+    return Text(default, help, longest=longest, pattern=pattern, example=example, rebuild=rebuild).placed(group, when)
 
 
 def formula(default: str, help: str, *, variables: Sequence[str] = ("x", "y", "z", "t"),

@@ -95,6 +95,11 @@ class FieldSamples:
             self.sides[unknown] = NO_VALUE
         self.evaluate_ms = 1e3 * (time.perf_counter() - started)
 
+    @property
+    def without_value(self) -> int:
+        """How many samples are NaN or infinite."""
+        return int((self.sides == NO_VALUE).sum()) if self.sides.max() >= NO_VALUE else 0
+
     def describe_to(self, program: Program) -> None:
         """Tell ``program`` where the samples are, in space and in the texture: see lib/grid.glsl."""
         program["u_grid_samples"] = self.lattice.samples

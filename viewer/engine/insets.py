@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import moderngl
 import numpy as np
@@ -16,12 +17,11 @@ Card = tuple[float, float, float, float]
 
 
 class Insets:
-    """Shows one model at a time; ``card`` (left, bottom, right, top, each -1 to 1) lays a dark card behind it."""
+    """Shows one model at a time; ``card`` (left, bottom, right, top, each -1 to 1) lays a card behind it."""
 
     def __init__(self, gpu: Gpu) -> None:
         self.gpu = gpu
         self.card: Card | None = None
-        self.card_opacity = 0.93
         self._counts = [0, 0, 0]
         self._buffers = [gpu.buffer(reserve=4096, label=name) for name in ("rods", "balls", "faces")]
         rods, balls, faces = self._buffers
@@ -50,9 +50,7 @@ class Insets:
                 buffer.write(np.ascontiguousarray(rows))
 
     def draw(self) -> None:
-        """Draw the card and the model; neither casts a shadow."""
-        if self.gpu.casting_shadows:
-            return
+        """Draw the card and the model: in ``Scene.draw_over``, where nothing comes to lie over them."""
         if self.card:
             self._draw_card(self.card)
         rods, balls, faces = self._counts
@@ -65,7 +63,7 @@ class Insets:
 
     def _draw_card(self, card: Card) -> None:
         context = self.gpu.context
-        self._plate["u_plate"], self._plate["u_opacity"] = card, self.card_opacity
+        self._plate["u_plate"] = card
         context.enable(moderngl.BLEND)
         context.depth_func = "1"
         self._plates.render(vertices=4)
@@ -77,6 +75,6 @@ def rod_sides() -> NDArray[np.float32]:
     """A rod of length one without ends, as triangles: (n, 3), the last number being along it."""
     around = [(math.cos(2 * math.pi * i / SIDES), math.sin(2 * math.pi * i / SIDES)) for i in range(SIDES + 1)]
     rows = []
-    for (ax, ay), (bx, by) in zip(around[:-1], around[1:], strict=True):
+    for (ax, ay), (bx, by) in pairwise(around):
         rows += [(ax, ay, 0), (bx, by, 0), (bx, by, 1), (ax, ay, 0), (bx, by, 1), (ax, ay, 1)]
     return np.array(rows, "f4")

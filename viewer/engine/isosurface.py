@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import moderngl
@@ -21,7 +21,16 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.program import Program, VertexArray
 from viewer.kit import bits
 from viewer.kit.marching import renumbered
-from viewer.kit.marching_grid import Grid, Topology, cells_touching, has_neighbour, in_order, topology
+from viewer.kit.marching_grid import (
+    Grid,
+    Topology,
+    ambiguous_face_count,
+    cells_touching,
+    has_neighbour,
+    in_order,
+    topology,
+)
+from viewer.kit.ray import first_cell
 
 WIDTH = 1024            # vertices in a row of the textures
 VALUES_UNIT, LIST_UNIT = 0, 1
@@ -83,9 +92,11 @@ class Isosurface:
     def take(self, make: Callable[[], tuple[NDArray[np.float64], NDArray[np.int32]]], wanted: Wanted) -> None:
         """Take over a surface made elsewhere: vertices (n, 3) in samples, triangles (m, 3)."""
         started = time.perf_counter()
-        _, self.left_out = _inside_and_left_out(self.samples)
+        inside, self.left_out = _inside_and_left_out(self.samples)
         vertices, triangles = make()
-        self.found, self.jumps = NO_CELLS, 0
+        self.found, self.jumps = topology(inside, self.samples.lattice.grid.axes, "cubes", self.left_out), 0
+        if wanted.in_order:
+            self.found, triangles = self._sorted_by_cell(vertices, triangles)
         rows = np.ones((len(vertices), 4), np.float32)
         rows[:, :3] = vertices
         self._run("place", rows, 4, "f4", wanted)
@@ -104,10 +115,42 @@ class Isosurface:
         kept = np.flatnonzero(used)
         return places[kept], renumbered(triangles, kept), normals[kept]
 
+    def cases(self) -> NDArray[np.uint8]:
+        """The case of each cell that the surface runs through."""
+        return self.found.cases
+
+    def cell_under(self, origin: NDArray[np.float64], direction: NDArray[np.float64]) -> tuple[int, int, int] | None:
+        """The first cell with a part of the surface that a ray, given in samples, goes through."""
+        grid = self.samples.lattice.grid
+        return first_cell(grid.coordinates(self.found.cells).astype(np.float64), origin, direction)
+
+    def ambiguous_faces(self) -> int:
+        """How many faces of the grid have two opposite corners inside and two outside."""
+        sides, grid = self.samples.sides, self.samples.lattice.grid
+        unknown = bits.packed(sides == NO_VALUE) if self.left_out is not None else None
+        return ambiguous_face_count(bits.packed(sides == INSIDE), grid, unknown)
+
+    def gaps(self) -> NDArray[np.intp]:
+        """The cells left out that a surface might have run through: not those without any value."""
+        if self.left_out is None:
+            return np.empty(0, np.intp)
+        grid = self.samples.lattice.grid
+        return bits.places_of_ones(self.left_out & cells_touching(bits.packed(self.samples.sides != NO_VALUE), grid))
+
     def bind(self, places: int, normals: int) -> None:
         """Let shaders read the vertices through these texture units."""
         self.places.use(places)
         self.normals.use(normals)
+
+    def _sorted_by_cell(self, vertices: NDArray[np.float64],
+                        triangles: NDArray[np.int32]) -> tuple[Topology, NDArray[np.int32]]:
+        """The topology with the owners of these triangles, and the triangles in that order."""
+        cells = np.floor(vertices[triangles].mean(axis=1)).astype(np.intp)
+        grid = self.samples.lattice.grid
+        numbers = cells @ np.array([grid.offset(1 << axis) for axis in range(3)])
+        owners = np.searchsorted(self.found.cells, numbers).astype(np.int32)
+        order = np.argsort(owners, kind="stable")
+        return replace(self.found, triangles=triangles[order], owners=owners[order]), triangles[order]
 
     def _place_crossings(self, wanted: Wanted) -> NDArray[np.bool_]:
         """Find where each crossed edge is crossed; returns which of them the field jumps over."""
@@ -116,7 +159,8 @@ class Isosurface:
             return np.zeros(self.vertex_count, np.bool_)
         size = (WIDTH, -(-self.vertex_count // WIDTH))
         flags = np.frombuffer(self._target.read((0, 0, *size), 1, attachment=2, alignment=1), np.uint8)
-        return flags[:self.vertex_count] != 0
+        jumping: NDArray[np.bool_] = flags[:self.vertex_count] != 0
+        return jumping
 
     def _run(self, name: str, rows: NDArray[Any], components: int, dtype: str, wanted: Wanted) -> None:
         """Let the pass ``name`` make a vertex of each row."""

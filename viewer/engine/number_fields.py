@@ -14,11 +14,11 @@ from viewer.engine.fields import Field, ParameterError, T, Uniform
 class Number(Field[T]):
     """What sliders, integers and intervals share: finite numbers between two ends."""
 
-    def __init__(self, default: object, minimum: float, maximum: float, help: str, *,
-                 unit: str = "", logarithmic: bool = False, rebuild: bool = False) -> None:
+    def __init__(self, default: object, minimum: float, maximum: float, help: str, *, unit: str = "",
+                 logarithmic: bool = False, rebuild: bool = False, handy: tuple[float, float] | None = None) -> None:
         if not minimum < maximum or (logarithmic and minimum <= 0):
             raise ParameterError(f"a range from {minimum} to {maximum} holds no numbers to choose from")
-        self.minimum, self.maximum, self.logarithmic = minimum, maximum, logarithmic
+        self.minimum, self.maximum, self.logarithmic, self.handy = minimum, maximum, logarithmic, handy
         super().__init__(default, help, unit=unit, rebuild=rebuild)
 
     @property
@@ -28,8 +28,8 @@ class Number(Field[T]):
 
     @property
     def widget_range(self) -> tuple[float, float]:
-        """The ends of the slider on screen."""
-        return self.minimum, self.maximum
+        """The ends of the slider on screen; typing reaches all of the range."""
+        return self.handy or (self.minimum, self.maximum)
 
     def limits(self) -> dict[str, Any]:
         return {"minimum": self.minimum, "maximum": self.maximum, "logarithmic": self.logarithmic}
@@ -76,12 +76,8 @@ class FormulaSlider(Slider):
     """
 
     def __init__(self, name: str, formula_name: str) -> None:
-        super().__init__(1.0, -1e6, 1e6, f"Your own name in {formula_name}")
+        super().__init__(1.0, -1e6, 1e6, f"Your own name in {formula_name}", handy=(-10.0, 10.0))
         self.name = name
-
-    @property
-    def widget_range(self) -> tuple[float, float]:
-        return -10.0, 10.0
 
 
 class Integer(Number[int]):

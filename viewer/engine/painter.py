@@ -46,7 +46,7 @@ class Painter:
 
         ``draw_over`` comes after the set; what ``labels`` gives after that is lettered over the finished picture.
         """
-        self._cast_shadow(scene, frame, draw)
+        self._cast_shadow(scene, camera, frame, draw)
         self.set_moment(camera, frame, middle)
         self.picture.begin()
         plain_state(self.context)
@@ -121,8 +121,8 @@ class Painter:
         return (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
                 frame if moves else None)
 
-    def _cast_shadow(self, scene: Scene, frame: int, draw: Callable[[], None]) -> None:
-        shows = self.scene_showing(scene, frame)
+    def _cast_shadow(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None]) -> None:
+        shows = (self.scene_showing(scene, frame), camera.look if scene.turns_with_camera() else None)
         if shows == self._shadow_shows:
             return
         self._shadow_shows = None

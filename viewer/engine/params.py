@@ -10,12 +10,13 @@ nobody declared becomes a slider of its own for as long as the formula uses it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from typing import Any, ClassVar, TypeAlias
 
 from viewer.engine.conditions import Condition, conditions_of
 from viewer.engine.fields import Field, ParameterError, Uniform, nearest
 from viewer.engine.formula_field import FormulaField
-from viewer.engine.number_fields import FormulaSlider, Integer, Slider
+from viewer.engine.number_fields import FormulaSlider, Integer, Number, Slider
 from viewer.engine.word_fields import Toggle
 from viewer.kit.formula import Formula
 
@@ -42,6 +43,7 @@ class Parameters:
     def __init__(self, values: Mapping[str, object] | None = None, *, seed: int = 0) -> None:
         self.seed = seed
         self.revision = 0
+        self._offered: dict[str, Field[Any]] = {}
         self._values: dict[str, Any] = {name: field.default for name, field in self.declared.items()}
         self._born: dict[str, Field[Any]] = _fields_from_formulas(self.declared, self._values)
         self.update(values or {})
@@ -115,6 +117,17 @@ class Parameters:
                     if isinstance(field, FormulaField)}
         born = _fields_from_formulas(self.declared, formulas)
         return {**complete, **{name: field.default for name, field in born.items()}, **values}
+
+    def offer(self, name: str, low: float, high: float) -> None:
+        """Let the slider of a number on screen run from ``low`` to ``high``, here and now."""
+        field = copy(self.field(name))
+        if isinstance(field, Number) and low < high:
+            field.handy = max(low, field.minimum), min(high, field.maximum)
+            self._offered[name] = field
+
+    def offered(self, name: str) -> Field[Any]:
+        """The declaration of a parameter, as its widget is to show it."""
+        return self._offered.get(name) or self.field(name)
 
     def is_default(self, name: str) -> bool:
         """Whether a parameter still has its declared value."""

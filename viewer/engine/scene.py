@@ -220,6 +220,10 @@ class Scene:
         """Where in the picture, each -1 to 1, the camera's target stands: aside where something else needs room."""
         return 0.0, 0.0
 
+    def turns_with_camera(self) -> bool:
+        """Whether what casts shadows now depends on where the camera is."""
+        return False
+
     def color_scale(self) -> ColorScale | None:
         """What the colours now stand for, where they stand for a number; the window shows the scale."""
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -55,12 +56,13 @@ class Choice(Field[str]):
 
 
 class Text(Field[str]):
-    """A line of text."""
+    """A line of text; where ``pattern``, a regular expression, is given, empty or all of it as in ``example``."""
 
     kind = "text"
 
-    def __init__(self, default: str, help: str, *, longest: int = 200, rebuild: bool = False) -> None:
-        self.longest = longest
+    def __init__(self, default: str, help: str, *, longest: int = 200, pattern: str = "", example: str = "",
+                 rebuild: bool = False) -> None:
+        self.longest, self.pattern, self.example = longest, pattern, example
         super().__init__(default, help, rebuild=rebuild)
 
     def parse(self, value: object) -> str:
@@ -68,7 +70,9 @@ class Text(Field[str]):
             raise self.refuse(value, "is not text")
         if len(value) > self.longest or not value.isprintable():
             raise self.refuse(value, f"is not one line of at most {self.longest} characters")
+        if self.pattern and value.strip() and not re.fullmatch(self.pattern, value.strip()):
+            raise self.refuse(value, f"is not written like {self.example}")
         return value
 
     def limits(self) -> dict[str, Any]:
-        return {"longest": self.longest}
+        return {"longest": self.longest, "pattern": self.pattern, "example": self.example}

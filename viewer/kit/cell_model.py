@@ -12,12 +12,12 @@ from viewer.kit.marching_cases import CORNERS, FACES, TETRAHEDRA, case_table, mi
 from viewer.kit.marching_cell import Cell
 from viewer.kit.models import Frame, Model, Rgb, rgb
 
-# Okabe and Ito (2008), on a dark card.
-INSIDE, OUTSIDE = "#e8702a", "#56b4e9"
-CROSSING, OTHER_WAY = "#f0e442", "#cc79a7"
-EDGE, DIAGONAL, NO_VALUE = "#9aa3ae", "#6d7580", "#cc79a7"
+# Okabe and Ito (2008), on a light card.
+INSIDE, OUTSIDE, NO_VALUE = "#d55e00", "#0072b2", "#cc79a7"
+CROSSING, OTHER_WAY = "#16181c", "#cc79a7"
+EDGE, DIAGONAL, FAINT = "#8b929c", "#b9bec6", "#c9ccd0"
 TETRAHEDRON_COLORS = ("#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00")
-ABSENT = "#59616c"
+ABSENT = "#d3d4d2"
 
 
 def microscope_model(cell: Cell, frame: Frame, surface: Rgb, tetrahedra: bool,
@@ -70,7 +70,7 @@ def sheet_frames(aspect: float, left: float, right: float, bottom: float, top: f
     columns = max((8, 16, 20, 22, 26, 32, 43), key=lambda count: min(width / count, height / -(-256 // count)))
     rows = -(-256 // columns)
     pitch_x, pitch_y = (right - left) / columns, height / rows
-    size = 0.46 * min(width / columns, height / rows)
+    size = 0.51 * min(width / columns, height / rows)
     return {case: (left + (case % columns + 0.5) * pitch_x, top - (case // columns + 0.56) * pitch_y, size)
             for case in range(256)}
 
@@ -78,7 +78,7 @@ def sheet_frames(aspect: float, left: float, right: float, bottom: float, top: f
 def sheet_model(frames: dict[int, Frame], method: str, present: Collection[int], surface: Rgb) -> Model:
     """All cases, those that are ``present`` in colour."""
     model = Model()
-    for wanted, edges, skin in ((True, rgb(EDGE), surface), (False, rgb("#3c434d"), rgb(ABSENT))):
+    for wanted, edges, skin in ((True, rgb(EDGE), surface), (False, rgb(FAINT), rgb(ABSENT))):
         for case, frame in frames.items():
             if (case in present) == wanted:
                 _add_case(model, case, method, frame, edges, skin)

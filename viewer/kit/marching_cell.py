@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -126,7 +127,7 @@ def _triangles(case: int, method: str) -> tuple[Sequence[Triangle], list[int]]:
         triangles = case_table(method).cases[case]
         return triangles, [0] * len(triangles)
     parts = [tetrahedron_triangles(case, tetrahedron) for tetrahedron in TETRAHEDRA]
-    return sum(parts, []), [index for index, part in enumerate(parts) for _ in part]
+    return list(chain.from_iterable(parts)), [index for index, part in enumerate(parts) for _ in part]
 
 
 def _crossing(edge: Edge, values: NDArray[np.float64]) -> Crossing:

@@ -79,7 +79,7 @@ def topology(inside: Bytes, axes: tuple[int, int, int] = (0, 1, 2), method: str 
     ``inside`` is a contiguous array of three axes, each at least 2 long. ``left_out`` has a bit set for each
     cell that shall yield nothing; vertices that only such cells have are found all the same.
     """
-    grid, table = Grid(inside.shape, axes), packed_table(method)  # type: ignore[arg-type]
+    grid, table = Grid(inside.shape, axes), packed_table(method)
     signs = packed(inside)
     edges = [crossed_edges(signs, grid, direction) for direction in table.directions]
     cells = places_of_ones(mixed_cells(signs, grid) & ~left_out if left_out is not None else mixed_cells(signs, grid))

@@ -33,7 +33,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -136,8 +136,8 @@ def checked(values: ArrayLike) -> Floats:
 def cell_cases(values: Floats, level: float = 0.0) -> NDArray[np.uint8]:
     """The case of every cell, 0 to 15, or ``NOT_A_VALUE``; (nx - 1, ny - 1)."""
     inside = (values < level).view(np.uint8)
-    bits = inside[:-1] | inside[1:] << 1
-    cases: NDArray[np.uint8] = bits[:, :-1] | bits[:, 1:] << 2
+    pairs = inside[:-1] + 2 * inside[1:]
+    cases: NDArray[np.uint8] = pairs[:, :-1] + 4 * pairs[:, 1:]
     unknown = ~np.isfinite(values)
     if unknown.any():
         beside = unknown[:-1] | unknown[1:]
@@ -167,10 +167,10 @@ def saddle_value(corners: Floats) -> Floats:
     return value
 
 
-def crossing(A: Floats, B: Floats) -> Floats:
+def crossing(A: ArrayLike, B: ArrayLike) -> Floats:
     """Where on an edge with values A and B, less the level, the straight line through both is zero."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        t = A / (A - B)
+        t = np.asarray(A / np.subtract(A, B))
     return np.asarray(np.clip(np.where(np.isnan(t), 0.5, t), CLEARANCE, 1.0 - CLEARANCE))
 
 

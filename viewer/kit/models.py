@@ -59,6 +59,12 @@ class Model:
         low, high = np.asarray(low, np.float32), np.asarray(high, np.float32)
         self.rods(low + starts * (high - low), low + ends * (high - low), radius, color, frame)
 
+    def extend(self, other: Model) -> None:
+        """Add all parts of another model."""
+        self._rods += other._rods
+        self._balls += other._balls
+        self._faces += other._faces
+
     def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
         """Rods (n, 13), balls (n, 10) and the corners of faces (n, 12)."""
         return _joined(self._rods, RODS), _joined(self._balls, BALLS), _joined(self._faces, FACES)
@@ -75,7 +81,7 @@ def box_edges() -> tuple[NDArray[np.float32], NDArray[np.float32]]:
 def in_picture(points: ArrayLike, frame: Frame, view: NDArray[np.float64], aspect: float) -> NDArray[np.float64]:
     """Where points (n, 3) of a frame's unit cell appear in the picture, (n, 2), as lib/frame_model.glsl has it."""
     turned = (np.asarray(points, np.float64).reshape(-1, 3) - 0.5) @ view[:3, :3]
-    return np.array([frame[0], frame[1]]) + frame[2] * turned[:, :2] / np.array([aspect, 1.0])
+    return np.asarray(np.array([frame[0], frame[1]]) + frame[2] * turned[:, :2] / np.array([aspect, 1.0]))
 
 
 def _joined(parts: Sequence[NDArray[np.float32]], width: int) -> NDArray[np.float32]:

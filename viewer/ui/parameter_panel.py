@@ -117,7 +117,7 @@ class ParameterPanel:
         imgui.same_line(start + LABEL_SHARE * width)
         room = (1.0 - LABEL_SHARE) * width
         if field.kind in WIDGETS:
-            new = draw_value(field, value, room)
+            new = draw_value(stage.params.offered(field.name), value, room)
             tooltip(lambda: self._explained(stage, field))
             if new is not None:
                 self._set(stage, field, new)

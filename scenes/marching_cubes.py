@@ -1,0 +1,415 @@
+"""The lecture's marching cubes and tetrahedra: a surface through samples, live, and every cell of it explained."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer import (
+    Click,
+    ColorScale,
+    FieldSamples,
+    Geometry,
+    Gpu,
+    Insets,
+    Isosurface,
+    Label,
+    Lattice,
+    Measurements,
+    Orbit,
+    Parameters,
+    Scene,
+    Studio,
+    Table,
+    Wanted,
+    choice,
+    color,
+    file,
+    formula,
+    formula_include,
+    integer,
+    slider,
+    text,
+    toggle,
+)
+from viewer.kit import cell_cards, cell_model, cell_words, marching_cell, surface_words
+from viewer.kit.mesh_measure import mesh_numbers
+from viewer.kit.models import Model, rgb
+from viewer.kit.trilinear import trilinear_surface
+from viewer.kit.volume_file import SUFFIXES, read_volume
+
+TANGLE = "16*(x^4 + y^4 + z^4) - 20*(x^2 + y^2 + z^2) + 11.8"
+PLACES, NORMALS, VALUES = 0, 1, 2               # texture units
+MOST_MARKS = 20_000
+APART = 0.92                                    # from the middle to either surface of a comparison
+CLIP_DISTANCE = 0x3000                          # GL_CLIP_DISTANCE0
+VOLUME_FIELD = '#include "isosurface/volume_field.glsl"\n'
+FORMULA_FIELD = ("float field(vec3 place) { return formula(place); }\n"
+                 "vec3 field_gradient(vec3 place) { return formula_gradient(place); }\n")
+
+
+class MarchingCubes(Scene):
+    """Marching cubes and tetrahedra on a function you type, with every cell open to inspection."""
+
+    class Params(Parameters):
+        source: str = choice("formula", {
+            "formula": "A function of x, y and z that you type", "volume": "Samples from a file"},
+            "What the surface goes through", rebuild=True)
+        formula = formula(TANGLE, "The function; inside is where it is below the level", when="source=formula")
+        volume = file(None, "Samples on a grid: NumPy or NRRD", suffixes=SUFFIXES, when="source=volume")
+        level: float = slider(0.0, -1e6, 1e6, "The value that the surface has", handy=(-3.0, 3.0))
+        resolution: int = integer(64, 8, 256, "Cells along each axis", logarithmic=True, when="source=formula")
+        extent: float = slider(1.5, 0.1, 100.0, "The function is sampled from minus this to plus this",
+                               logarithmic=True, when="source=formula")
+        method: str = choice("cubes", {
+            "cubes": "256 cases, from a table", "tetrahedra": "Six tetrahedra in each cell, nothing ambiguous"},
+            "How cells become triangles")
+        topology: str = choice("table", {
+            "table": "Inside corners across an ambiguous face are always parted",
+            "trilinear": "As the trilinear function between the samples has it"},
+            "How ambiguous cells are decided", when="method=cubes")
+        view: str = choice("surface", {
+            "surface": "The surface", "compare": "Cubes and tetrahedra side by side",
+            "cases": "All 256 cases on a sheet"}, "What is shown")
+        colouring: str = choice("surface", {
+            "surface": "A lit surface", "normal": "The normal's x, y, z as red, green, blue",
+            "curvature": "How the surface bends: its mean curvature", "case": "Which of the 15 kinds each cell is",
+            "difference": "How far the other method's surface is away"}, "What the colours show", group="Look")
+        color: tuple[float, float, float] = color("#e07b39", "Colour of the outside", group="Look")
+        curvature_scale: float = slider(3.0, 0.001, 1000.0, "The curvature at the ends of the colours", unit="1/length",
+                                        logarithmic=True, group="Look", when="colouring=curvature")
+        difference_scale: float = slider(0.1, 0.001, 1.0, "The distance at the bright end of the colours", unit="cells",
+                                         logarithmic=True, group="Look", when="colouring=difference")
+        wireframe: bool = toggle(False, "The sides of the triangles", group="Look")
+        slice: str = choice("none", {"none": "The whole surface", "x": "Cut at right angles to x", "y": "to y",
+                                     "z": "to z"}, "A plane that shows the samples", group="Look")
+        slice_at: float = slider(0.0, -1.0, 1.0, "Where the plane cuts, in halves of the grid", group="Look",
+                                 when="slice!=none")
+        slice_range: float = slider(4.0, 1e-3, 1e5, "The distance from the level at the ends of the colours",
+                                    logarithmic=True, group="Look", when="slice!=none", handy=(0.01, 100.0))
+        jumps: str = choice("cut", {"cut": "No surface where the function jumps over the level, as at a pole",
+                                    "keep": "A wall there, as the samples alone suggest"},
+                            "What to make of jumps", group="Look", when="source=formula")
+        marks: bool = toggle(True, "Purple dots in cells that yield nothing, for want of a value or at a jump",
+                             group="Look")
+        cell: str = text("", "The cell under the microscope; a click chooses one", pattern=r"\d+ *, *\d+ *, *\d+",
+                         example="3,0,7", group="Cell microscope", when="view=surface")
+        walk: bool = toggle(False, "Visit the surface's cells one by one, as time goes on", group="Cell microscope",
+                            when="view=surface")
+        cells_per_second: float = slider(3.0, 0.1, 10000.0, "How fast the walk goes", logarithmic=True,
+                                         group="Cell microscope", when="walk, view=surface")
+        case: int = integer(-1, -1, 255, "Show cells of this case alone; -1 for all", group="Cell microscope")
+
+    camera = Orbit(yaw=32, pitch=20, distance=4.9)
+    studio = Studio(radius=1.8, ground=-1.06)
+
+    def __init__(self, gpu: Gpu, params: Params) -> None:
+        self.gpu, self.params = gpu, params
+        self.volume = read_volume(params.volume) if params.source == "volume" and params.volume else None
+        field = {"generated/case_classes.glsl": case_classes_glsl}
+        include = (lambda: VOLUME_FIELD) if params.source == "volume" else self.formula_field
+        self.samples = FieldSamples(gpu, None if params.source == "volume" else include)
+        self.surface, self.other = (Isosurface(gpu, self.samples, include) for _ in range(2))
+        smooth = gpu.program("marching_cubes/surface.vert", "marching_cubes/surface.frag", generated=field)
+        wired = gpu.program("marching_cubes/wire.vert", "marching_cubes/surface.frag", generated=field)
+        self.slice_plane = gpu.program("marching_cubes/slice.vert", "marching_cubes/slice.frag")
+        self.programs = [smooth, wired, self.slice_plane]
+        self.smooth = {mesh: gpu.vertex_array(smooth, index=mesh.indices) for mesh in (self.surface, self.other)}
+        self.wired = {mesh: gpu.vertex_array(wired, [(mesh.indices, "1i", "in_index")])
+                      for mesh in (self.surface, self.other)}
+        self.slice_square = gpu.vertex_array(self.slice_plane, mode=moderngl.TRIANGLE_STRIP)
+        self.marks, self.inset = Insets(gpu), Insets(gpu)
+        self.card: cell_cards.CellCard | None = None
+        self.made: object = None
+        self.laid_out: object = None
+        self.set_up_volume()
+
+    def set_up_volume(self) -> None:
+        """Turn the volume to the order of the GPU's samples, z y x, and offer the level's slider its range."""
+        if self.volume:
+            self.volume = replace(self.volume, values=np.ascontiguousarray(self.volume.values.T))
+            self.params.offer("level", self.volume.lowest, self.volume.highest)
+            self.params.offer("slice_range", 0.001, max(0.01, self.volume.highest - self.volume.lowest))
+
+    def formula_field(self) -> str:
+        """The formula as the field that is sampled."""
+        return formula_include(self.params, "formula") + FORMULA_FIELD
+
+    # Making the surface
+
+    def prepare(self) -> None:
+        wanted = self.wanted()
+        if wanted != self.made:
+            self.made = None
+            self.make()
+            self.made = wanted
+        self.describe()
+        self.set_up_card()
+
+    def wanted(self) -> object:
+        """Everything that the surface depends on."""
+        p = self.params
+        moment = self.time if p.source == "formula" and "t" in p.formula.variables else 0.0
+        numbers = tuple(p.numbers(p.formula).items())
+        return (p.formula.text, numbers, moment, p.level, p.resolution, p.extent, p.method, p.topology, p.jumps,
+                p.view == "compare", p.colouring == "curvature", p.walk, self.gpu.generation)
+
+    def make(self) -> None:
+        """Sample the field, and make the surface or, for a comparison, two."""
+        p, level = self.params, float(np.float32(self.params.level))
+        if p.source == "formula":
+            n, reach = p.resolution, p.extent
+            self.samples.evaluate(Lattice((n + 1,) * 3, (-reach,) * 3, (2.0 * reach / n,) * 3), level)
+        elif self.volume:
+            nz, ny, nx = self.volume.values.shape
+            lattice = Lattice((nx, ny, nz), (0.0, 0.0, 0.0), self.volume.spacing)
+            self.samples.fill(self.volume.values, lattice, level)
+        else:
+            return
+        self.extract(self.surface, p.method)
+        if p.view == "compare":
+            self.extract(self.other, "tetrahedra" if p.method == "cubes" else "cubes")
+        self.mark()
+
+    def extract(self, mesh: Isosurface, method: str) -> None:
+        """Make one surface of the samples."""
+        p = self.params
+        wanted = Wanted(float(np.float32(p.level)), method, cut_jumps=p.source == "formula" and p.jumps == "cut",
+                        curvature=p.colouring == "curvature", in_order=p.walk)
+        if method == "cubes" and p.topology == "trilinear":
+            mesh.take(lambda: trilinear_surface(self.samples.read_all().T, wanted.level), wanted)
+        else:
+            mesh.extract(wanted)
+
+    def mark(self) -> None:
+        """A dot in each cell next to the surface's samples that yields nothing."""
+        model, mesh = Model(), self.surface
+        if mesh.left_out is not None:
+            cells = mesh.gaps()
+            middles = self.in_world(self.samples.lattice.grid.coordinates(cells[::1 + len(cells) // MOST_MARKS]) + 0.5)
+            model.balls(middles, 0.18 * self.world_scale * min(self.samples.lattice.step), rgb(cell_model.NO_VALUE))
+        self.marks.show(model)
+
+    # Where the grid stands in the world: its longest side from -1 to 1
+
+    @property
+    def reach(self) -> NDArray[np.float64]:
+        """Half the size of the grid, in the field's own space."""
+        lattice = self.samples.lattice
+        return np.asarray(0.5 * np.array(lattice.step) * (np.array(lattice.samples) - 1))
+
+    @property
+    def world_scale(self) -> float:
+        """How large a unit of the field's space is in the world."""
+        return float((0.68 if self.params.view == "compare" else 1.0) / self.reach.max())
+
+    def in_world(self, samples: NDArray[np.floating]) -> NDArray[np.float64]:
+        """Where places given in samples (n, 3) stand."""
+        return np.asarray((samples * np.array(self.samples.lattice.step) - self.reach) * self.world_scale)
+
+    def describe(self) -> None:
+        """Tell the shaders where everything is."""
+        corner, scale = np.array(self.samples.lattice.corner), self.world_scale
+        for program in self.programs:
+            self.samples.describe_to(program)
+            program["u_slice_reach"] = tuple(self.reach)
+            program["u_world_middle"], program["u_world_scale"] = tuple(corner + self.reach), scale
+            program["u_world_offset"] = (0.0, 0.0, 0.0)
+            program["u_surface_level"] = float(np.float32(self.params.level))
+            program["u_places"], program["u_normals"], program["u_values"] = PLACES, NORMALS, VALUES
+            program["u_painted_side"] = self.params.source == "formula"
+
+    # Drawing
+
+    def draw(self) -> None:
+        if self.params.view == "cases":
+            return
+        pairs = [(self.surface, 0.0)]
+        if self.params.view == "compare":
+            first = self.params.method == "cubes"
+            pairs = [(self.surface, -APART if first else APART), (self.other, APART if first else -APART)]
+        self.samples.values.use(VALUES)
+        for mesh, offset in pairs:
+            self.draw_surface(mesh, offset)
+        if self.params.slice != "none":
+            self.slice_square.render(vertices=4)
+
+    def turns_with_camera(self) -> bool:
+        return bool(self.params.view == "compare")
+
+    def draw_surface(self, mesh: Isosurface, offset: float) -> None:
+        """Draw one surface, aside by ``offset``; in a walk, as far as that has come."""
+        count = mesh.count
+        if self.params.walk and mesh.found.cells.size:
+            count = 3 * int(np.searchsorted(mesh.found.owners, self.walked_to() + 1))
+        if not count:
+            return
+        mesh.bind(PLACES, NORMALS)
+        array = (self.wired if self.params.wireframe else self.smooth)[mesh]
+        array.program["u_world_offset"] = tuple(offset * self.view[:3, 0])       # aside, as the camera sees it
+        array.program["u_method"] = int((self.params.method == "tetrahedra") == (mesh is self.surface))
+        self.gpu.context.enable_direct(CLIP_DISTANCE)
+        array.render(vertices=count)
+        self.gpu.context.disable_direct(CLIP_DISTANCE)
+
+    def draw_over(self) -> None:
+        if self.params.view != "cases" and self.params.marks and self.params.view != "compare":
+            self.marks.draw()
+        if self.card:
+            self.inset.draw()
+
+    def color_scale(self) -> ColorScale | None:
+        p = self.params
+        if p.view == "cases":
+            return None
+        if p.slice != "none":
+            return ColorScale("value, less the level", -p.slice_range, p.slice_range)
+        if p.colouring == "curvature":
+            return ColorScale("mean curvature", -p.curvature_scale, p.curvature_scale)
+        if p.colouring == "difference":
+            return ColorScale("to the other method", 0.0, p.difference_scale, " cells")
+        return None
+
+    # Cells: the microscope, the walk, the sheet
+
+    def walked_to(self) -> int:
+        """The place, among the cells that the surface runs through, that the walk has come to."""
+        return min(int(self.time * self.params.cells_per_second + 1e-6), len(self.surface.found.cells) - 1)
+
+    def chosen_cell(self) -> tuple[int, int, int] | None:
+        """The cell under the microscope, by the sample at its lowest corner; None where there is none."""
+        if self.params.view != "surface":
+            return None
+        if self.params.walk and len(self.surface.found.cells):
+            number = self.surface.found.cells[[self.walked_to()]]
+            x, y, z = self.samples.lattice.grid.coordinates(number)[0].tolist()
+            return x, y, z
+        if not self.params.cell.strip():
+            return None
+        x, y, z = (int(part) for part in self.params.cell.split(","))
+        inside = all(0 <= at < count - 1 for at, count in zip((x, y, z), self.samples.lattice.samples, strict=True))
+        return (x, y, z) if inside else None
+
+    def examined(self, cell: tuple[int, int, int]) -> marching_cell.Cell:
+        """The cell, with its samples read back from the GPU."""
+        grid = self.samples.lattice.grid
+        number = sum(at * grid.offset(1 << axis) for axis, at in enumerate(cell))
+        values = self.samples.read(np.array([number + grid.offset(corner) for corner in range(8)]))
+        return marching_cell.examine(values.astype(np.float64) - np.float32(self.params.level), self.params.method)
+
+    def set_up_card(self) -> None:
+        """Lay out the microscope or the sheet, where one is wanted."""
+        p = self.params
+        look = cell_cards.Look(self.view, self.aspect, p.color, p.method == "tetrahedra")
+        chosen = self.chosen_cell()
+        stage = (p.view, chosen, p.case, look.method, look.aspect, self.view.tobytes(), p.color, p.topology, self.made)
+        if stage == self.laid_out:
+            return
+        self.laid_out, self.card = stage, None
+        if p.view == "cases":
+            self.card = cell_cards.sheet_card(look, self.case_counts(), p.case)
+        elif chosen:
+            cell = self.examined(chosen)
+            self.card = cell_cards.microscope_card(cell, "Cell {}, {}, {}".format(*chosen), look, self.decided(cell))
+            low, high = self.in_world(np.array([chosen, np.array(chosen) + 1], np.float64))
+            self.card.model.box(low, high, 0.006, rgb("#16181c"))
+        self.inset.card = self.card.rectangle if self.card else None
+        self.inset.show(self.card.model if self.card else Model())
+
+    def decided(self, cell: marching_cell.Cell) -> NDArray[np.float64] | None:
+        """The triangles of the trilinear surface in a cell; None where the table's are drawn."""
+        if self.params.topology != "trilinear" or self.params.method != "cubes" or not cell.has_values:
+            return None
+        vertices, triangles = trilinear_surface(cell.values.reshape(2, 2, 2).T, 0.0)
+        return vertices[triangles]
+
+    def case_counts(self) -> Mapping[int, int]:
+        """How many cells of the surface have each case."""
+        return dict(enumerate(np.bincount(self.surface.cases(), minlength=256).tolist()))
+
+    def middle(self) -> tuple[float, float]:
+        return cell_cards.room_for_card(self.aspect) if self.chosen_cell() else (0.0, 0.0)
+
+    def labels(self) -> Sequence[Label]:
+        if self.card:
+            return [Label(line.text, line.place, line.size, line.color, line.align, bold=line.bold)
+                    for line in self.card.lines]
+        if self.params.view != "compare":
+            return ()
+        methods = {"cubes": -APART, "tetrahedra": APART}
+        meshes = {self.params.method: self.surface}
+        return [Label(f"{method}\n{meshes.get(method, self.other).count // 3:,} triangles".replace(",", "\u2009"),
+                      (0.5 * x, -0.86), 1.1, plate="#f4f2edd8", bold=True) for method, x in methods.items()]
+
+    def click(self, click: Click) -> Mapping[str, object]:
+        if self.params.view == "cases" and self.card:
+            case = cell_cards.case_at(self.card, click.place, click.aspect)
+            return {"case": -1 if case is None or case == self.params.case else case}
+        if self.params.view != "surface" or self.params.walk or (self.card and self.card.covers(click.place)):
+            return {}
+        found = self.surface.cell_under(*self.ray_in_samples(click))
+        return {"cell": "" if found is None else "{},{},{}".format(*found)}
+
+    def ray_in_samples(self, click: Click) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where a click's ray starts, and how it goes on, in samples."""
+        step = np.array(self.samples.lattice.step)
+        return (click.origin / self.world_scale + self.reach) / step, click.direction / (self.world_scale * step)
+
+    # What it tells
+
+    def geometry(self) -> Geometry:
+        vertices, triangles, normals = self.surface.mesh()
+        return {"vertices": vertices, "triangles": triangles, "normals": normals}
+
+    def measure(self) -> Measurements:
+        vertices, triangles, _ = self.surface.mesh()
+        numbers = mesh_numbers(vertices, triangles)._asdict()
+        if self.params.source == "volume":
+            numbers["volume"] = abs(numbers["volume"])      # in a volume, what is solid is often what is above
+        cells = self.surface.cases()
+        return {
+            **numbers, "active_cells": len(cells), "ambiguous_faces": self.surface.ambiguous_faces(),
+            "jumps": self.surface.jumps, "evaluate_ms": self.samples.evaluate_ms,
+            "extract_ms": self.surface.extract_ms, **self.comparison(), **self.microscope_tables()}
+
+    def comparison(self) -> Mapping[str, Table]:
+        """Both methods beside each other."""
+        if self.params.view != "compare":
+            return {}
+        other = "tetrahedra" if self.params.method == "cubes" else "cubes"
+        return {"comparison": Table(("method", "triangles", "vertices", "ms"), [
+            (name, mesh.count // 3, mesh.vertex_count, round(mesh.extract_ms, 2))
+            for name, mesh in ((self.params.method, self.surface), (other, self.other))])}
+
+    def microscope_tables(self) -> Mapping[str, Table]:
+        """The cell under the microscope in numbers."""
+        chosen = self.chosen_cell()
+        if not chosen:
+            return {}
+        cell = self.examined(chosen)
+        tables = {"corners": Table(cell_words.CORNER_COLUMNS, cell_words.corner_rows(cell)),
+                  "crossings": Table(cell_words.CROSSING_COLUMNS, cell_words.crossing_rows(cell)),
+                  "ambiguous": Table(cell_words.FACE_COLUMNS, cell_words.face_rows(cell))}
+        return {f"cell_{name}": table for name, table in tables.items() if table.rows}
+
+    def remarks(self) -> Sequence[str]:
+        p, found = self.params, []
+        if p.source == "volume" and not self.volume:
+            return ["Choose a volume: a file of samples, NumPy or NRRD."]
+        if not self.surface.count:
+            what = "The function" if p.source == "formula" else "The volume"
+            found.append(surface_words.about_emptiness(self.samples.read_all(), p.level, what))
+        found += surface_words.about_gaps(self.surface.jumps, self.samples.without_value, self.samples.lattice.count)
+        if p.cell.strip() and p.view == "surface" and not p.walk and not self.chosen_cell():
+            last = ",".join(str(count - 2) for count in self.samples.lattice.samples)
+            found.append(f"Cell {p.cell} is outside the grid: 0,0,0 to {last}.")
+        return found
+
+
+def case_classes_glsl() -> str:
+    """Which of the 15 kinds each of the 256 cases is."""
+    return f"const int case_classes[256] = int[]({', '.join(map(str, cell_model.case_classes()))});\n"

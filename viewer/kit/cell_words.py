@@ -1,0 +1,66 @@
+"""What there is to say of a cell under the microscope: headline, lines for the picture, rows for tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from viewer.kit.marching_cell import Cell, edge_name
+
+Row = tuple["float | str", ...]
+CORNER_COLUMNS = ("corner", "sign", "value")
+CROSSING_COLUMNS = ("edge", "A", "B", "t")
+FACE_COLUMNS = ("face", "saddle", "inside")
+
+
+def signed(value: float, digits: int = 3) -> str:
+    """A number with its sign, as one writes it: ``+0.25``, ``\u22121.2``."""
+    text = f"{value:+.{digits}g}"
+    return text.replace("-", "\u2212")
+
+
+def corner_rows(cell: Cell) -> list[Row]:
+    """Each corner's number, with its bits x y z, its sign and its value less the level."""
+    return [(f"{corner} ({''.join(str(corner >> axis & 1) for axis in range(3))})",
+             "inside" if value < 0.0 else "outside" if value >= 0.0 else "no value", float(value))
+            for corner, value in enumerate(cell.values)]
+
+
+def crossing_rows(cell: Cell) -> list[Row]:
+    """Each crossed edge's corners, the values A and B at its ends and t = A / (A - B)."""
+    return [(edge_name(crossing.edge), crossing.A, crossing.B, crossing.t) for crossing in cell.crossings]
+
+
+def face_rows(cell: Cell) -> list[Row]:
+    """Each ambiguous face, the bilinear value at its saddle, and what the trilinear surface makes of it."""
+    return [(face.name, face.saddle, "joined" if face.joins_inside else "parted") for face in cell.ambiguous]
+
+
+def headline(cell: Cell, name: str) -> str:
+    """The cell's name, its case in decimal and binary, and how many triangles it yields."""
+    if not cell.has_values:
+        return f"{name}\na corner without a value: the cell yields nothing"
+    count = len(cell.triangles)
+    return f"{name}\ncase {cell.case} = {cell.binary} in binary: {count} triangle{'' if count == 1 else 's'}"
+
+
+def crossing_lines(cell: Cell, *, short: bool = False) -> Iterator[str]:
+    """One line for each crossed edge, with t worked out or, ``short``, just given."""
+    for crossing in cell.crossings:
+        if short:
+            yield f"{edge_name(crossing.edge)}:  t = {crossing.t:.3f}"
+            continue
+        A = signed(crossing.A).removeprefix("+")
+        yield f"{edge_name(crossing.edge)}:  {A} / ({A} {_taken(crossing.B)}) = {crossing.t:.3f}"
+
+
+def face_lines(cell: Cell) -> Iterator[str]:
+    """One line for each ambiguous face."""
+    for face in cell.ambiguous:
+        what = "joins" if face.joins_inside else "parts"
+        yield f"face {face.name}: saddle {signed(face.saddle, 2)} {what} the inside"
+
+
+def _taken(value: float) -> str:
+    """Minus a value, as one writes it: ``\u2212 0.25``, ``+ 1.2``."""
+    sign = "+" if value < 0.0 else "\u2212"
+    return f"{sign} {abs(value):.3g}"
