@@ -82,8 +82,8 @@ class MarchingCubes(Scene):
         color: tuple[float, float, float] = color("#e07b39", "Colour of the outside", group="Look")
         curvature_scale: float = slider(3.0, 0.001, 1000.0, "The curvature at the ends of the colours", unit="1/length",
                                         logarithmic=True, group="Look", when="colouring=curvature")
-        difference_scale: float = slider(0.1, 0.001, 1.0, "The distance at the bright end of the colours", unit="cells",
-                                         logarithmic=True, group="Look", when="colouring=difference")
+        difference_scale: float = slider(0.03, 0.001, 1.0, "The distance at the bright end of the colours",
+                                         unit="cells", logarithmic=True, group="Look", when="colouring=difference")
         wireframe: bool = toggle(False, "The sides of the triangles", group="Look")
         slice: str = choice("none", {"none": "The whole surface", "x": "Cut at right angles to x", "y": "to y",
                                      "z": "to z"}, "A plane that shows the samples", group="Look")
@@ -96,8 +96,8 @@ class MarchingCubes(Scene):
                             "What to make of jumps", group="Look", when="source=formula")
         marks: bool = toggle(True, "Purple dots in cells that yield nothing, for want of a value or at a jump",
                              group="Look")
-        cell: str = text("", "The cell under the microscope; a click chooses one", pattern=r"\d+ *, *\d+ *, *\d+",
-                         example="3,0,7", group="Cell microscope", when="view=surface")
+        cell: str = text("", "The cell under the microscope; a click chooses one",
+                         pattern=r"\d{1,6}( *, *\d{1,6}){2}", example="3,0,7", group="Cell microscope", when="view=surface")
         walk: bool = toggle(False, "Visit the surface's cells one by one, as time goes on", group="Cell microscope",
                             when="view=surface")
         cells_per_second: float = slider(3.0, 0.1, 10000.0, "How fast the walk goes", logarithmic=True,
@@ -336,7 +336,7 @@ class MarchingCubes(Scene):
 
     def labels(self) -> Sequence[Label]:
         if self.card:
-            return [Label(line.text, line.place, line.size, line.color, line.align, bold=line.bold)
+            return [Label(line.text, line.place, line.size, line.color, line.align, line.plate, line.bold)
                     for line in self.card.lines]
         if self.params.view != "compare":
             return ()

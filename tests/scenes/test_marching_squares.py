@@ -225,10 +225,10 @@ def test_remarks(stage: Stage) -> None:
 def test_cells_by_name(stage: Stage, capsys: pytest.CaptureFixture[str]) -> None:
     """Malformed ones are refused in one line; one outside the grid is told and not shown."""
     for name in ("3", "3,4,5", "a,b", "-1,2", "3;4", "1e3,2", "²,3"):
-        with pytest.raises(viewer.ParameterError, match="is not a column and a row such as 3,4"):
+        with pytest.raises(viewer.ParameterError, match="is not written like 3,4"):
             viewer.render("marching_squares", size=SIZE, params={"cell": name})
     assert cli.main(["measure", "marching_squares", "--set", "cell=x"]) == 2
-    assert capsys.readouterr().err == "error: cell = x is not a column and a row such as 3,4\n"
+    assert capsys.readouterr().err == "error: cell = x is not written like 3,4\n"
     stage.set(cell=" 8, 9 ")
     stage.render()
     assert stage.scene.cell == (8, 9) and stage.remarks() == []

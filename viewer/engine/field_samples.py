@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.gpu import Gpu, GpuError
-from viewer.engine.program import Program
+from viewer.engine.program import Program, VertexArray
 from viewer.kit.marching_grid import Grid
 
 Triple = tuple[float, float, float]
@@ -65,15 +65,17 @@ class FieldSamples:
             self._program = gpu.program("studio/screen.vert", "isosurface/evaluate.frag",
                                         generated={"generated/field.glsl": include})
             self._everywhere = gpu.vertex_array(self._program)
+            self._warm = Warmth(gpu)
         self._make_room(self.lattice)
 
     def evaluate(self, lattice: Lattice, level: float) -> None:
         """Compute the field at every point of ``lattice``; raises GpuError where that is too much."""
         assert self._program
-        started = time.perf_counter()
         self._make_room(lattice)
         self.describe_to(self._program)
         self._program["u_surface_level"] = level
+        self._warm.up(self._target, self._everywhere)
+        started = time.perf_counter()
         with drawing_into(self.gpu, self._target, self._target.size):
             self._everywhere.render(vertices=3)
         self._target.read_into(self._texels, components=1, attachment=1, alignment=1)    # waits for the GPU
@@ -144,6 +146,23 @@ class FieldSamples:
             raise GpuError(f"{nx} x {ny} x {nz} samples need {lattice.count * BYTES_PER_SAMPLE / 2**30:.1f} GiB; "
                            f"at most {MOST_SAMPLES * BYTES_PER_SAMPLE / 2**30:.1f} GiB is allowed")
         self.gpu.check_size(size, f"a grid of {nx} x {ny} x {nz} samples, in a texture")
+
+
+class Warmth:
+    """Drivers finish compiling a program when it first draws; a texel drawn beforehand keeps that out of timings."""
+
+    def __init__(self, gpu: Gpu) -> None:
+        self.gpu = gpu
+        self._known: dict[Program, int] = {}
+
+    def up(self, target: moderngl.Framebuffer, pass_over: VertexArray) -> None:
+        """Draw a texel of ``target`` if the program has changed since it was last warm."""
+        program = pass_over.program
+        if self._known.get(program) != program.generation:
+            with drawing_into(self.gpu, target, (1, 1)):
+                pass_over.render(vertices=3)
+            self.gpu.context.finish()
+            self._known[program] = program.generation
 
 
 class drawing_into:     # noqa: N801, used as a statement

@@ -16,7 +16,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, drawing_into
+from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, Warmth, drawing_into
 from viewer.engine.gpu import Gpu
 from viewer.engine.program import Program, VertexArray
 from viewer.kit import bits
@@ -26,6 +26,7 @@ from viewer.kit.marching_grid import (
     Topology,
     ambiguous_face_count,
     cells_touching,
+    get_ready,
     has_neighbour,
     in_order,
     topology,
@@ -66,6 +67,8 @@ class Isosurface:
         self.extract_ms = 0.0
         self.indices = gpu.buffer(reserve=4 * 3 * 1024, label="triangles")
         self._passes: dict[str, tuple[Program, VertexArray]] = {}
+        self._warm = Warmth(gpu)
+        self._given: moderngl.Texture | None = None
         self._made: list[Any] = []
         self._rows = 0
         self._make_room(1)
@@ -73,6 +76,7 @@ class Isosurface:
 
     def extract(self, wanted: Wanted) -> None:
         """Make the surface of the samples, as they now are."""
+        self._warm_up("crossing", wanted.method)
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         axes = self.samples.lattice.grid.axes
@@ -91,6 +95,7 @@ class Isosurface:
 
     def take(self, make: Callable[[], tuple[NDArray[np.float64], NDArray[np.int32]]], wanted: Wanted) -> None:
         """Take over a surface made elsewhere: vertices (n, 3) in samples, triangles (m, 3)."""
+        self._warm_up("place", "cubes")
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         vertices, triangles = make()
@@ -169,7 +174,7 @@ class Isosurface:
         if not lines:
             return
         self._make_room(lines)
-        given = self._edges if name == "crossing" else self._explicit()
+        given = self._given_to(name)
         padded = np.zeros((lines * WIDTH, components), dtype)
         padded[:len(rows)] = rows.reshape(-1, components)
         given.write(padded, (0, 0, WIDTH, lines))
@@ -181,6 +186,22 @@ class Isosurface:
         given.use(LIST_UNIT)
         with drawing_into(self.gpu, self._target, (WIDTH, lines)):
             everywhere.render(vertices=3)
+
+    def _warm_up(self, name: str, method: str) -> None:
+        """Have ready what is made once and then kept: the table, and the pass as the driver runs it."""
+        get_ready(self.samples.lattice.grid, method)
+        self.samples.values.use(VALUES_UNIT)        # drivers compile for the kinds of textures in use
+        self._given_to(name).use(LIST_UNIT)
+        self._warm.up(self._target, self._pass(name)[1])
+
+    def _given_to(self, name: str) -> moderngl.Texture:
+        """The texture of what a pass makes vertices from: crossings, or places made elsewhere."""
+        if name == "crossing":
+            return self._edges
+        if self._given is None:
+            self._given = self.gpu.texture((WIDTH, self._rows), 4, dtype="f4", label="given places")
+            self._made.append(self._given)
+        return self._given
 
     def _pass(self, name: str) -> tuple[Program, VertexArray]:
         if name not in self._passes:
@@ -206,19 +227,12 @@ class Isosurface:
         self.gpu.discard(*self._made)
         size = (WIDTH, self._rows)
         self._edges = self.gpu.texture(size, 1, dtype="u4", label="crossings")
-        self._given: moderngl.Texture | None = None
+        self._given = None
         self.places = self.gpu.texture(size, 4, dtype="f4", label="places")
         self.normals = self.gpu.texture(size, 4, dtype="f4", label="normals")
         jump = self.gpu.texture(size, 1, label="jumps")
         self._target = self.gpu.framebuffer([self.places, self.normals, jump], label="vertices")
         self._made = [self._target, jump, self.normals, self.places, self._edges]
-
-    def _explicit(self) -> moderngl.Texture:
-        """The texture for vertices whose places are given."""
-        if self._given is None:
-            self._given = self.gpu.texture((WIDTH, self._rows), 4, dtype="f4", label="given places")
-            self._made.append(self._given)
-        return self._given
 
     def _read(self, attachment: int) -> NDArray[np.float32]:
         lines = -(-self.vertex_count // WIDTH)

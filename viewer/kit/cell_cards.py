@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from viewer.kit import cell_words
 from viewer.kit.cell_model import INSIDE, OUTSIDE, case_triangles, microscope_model, sheet_frames, sheet_model
 from viewer.kit.marching_cases import CORNERS
-from viewer.kit.marching_cell import Cell, examine
+from viewer.kit.marching_cell import Cell, Crossing, edge_name, examine
 from viewer.kit.models import Frame, Model, Rgb, in_picture
-from viewer.kit.square_cell_card import INK, QUIET, Line, Place, Rectangle
+from viewer.kit.square_cell_card import INK, QUIET, WARNING, Line, Place, Rectangle
 
 NARROW = 1.15                   # pictures whose width is less than this times their height have the card below
+PAPER = "#f2f1edb8"             # behind words that may stand over the cell itself
 ONE_COLUMN = 12                 # more lines than these stand in two columns
 LINE_STEP = 0.0735              # from line to line at letter size 1, in half heights of the picture
 
@@ -60,7 +61,9 @@ def microscope_card(cell: Cell, name: str, look: Look, triangles: NDArray[np.flo
     narrow = look.aspect < NARROW
     rectangle = (-0.97, -0.97, 0.97, -0.06) if narrow else (0.11, -0.955, 0.982, 0.955)
     left, bottom, right, top = rectangle
-    frame = (-0.5, -0.56, 0.40) if narrow else ((left + right) / 2.0, 0.24, min(0.60, 0.43 * look.aspect))
+    frame = ((left + right) / 2.0, 0.24, min(0.60, 0.43 * look.aspect))
+    if narrow:
+        frame = (-0.5, -0.60, min(0.38, 0.42 * look.aspect))
     letters = min(1.0, 0.72 * look.aspect if not narrow else 1.1 * look.aspect)
     head = list(_headline(cell, name, (left + 0.03, top - 0.065), letters))
     start = (0.02, -0.18) if narrow else (left + 0.03, -0.30)
@@ -107,24 +110,43 @@ def _corner_labels(cell: Cell, frame: Frame, look: Look, letters: float) -> Iter
         value = cell.values[corner]
         written = cell_words.signed(value) if np.isfinite(value) else "no value"
         color = INSIDE if value < 0.0 else OUTSIDE
-        yield Line(f"{corner}:  {written}", (float(place[0]), float(place[1])), 0.72 * letters, (0.5, 0.5), color, True)
+        at = float(place[0]), float(place[1])
+        yield Line(f"{corner}:  {written}", at, 0.72 * letters, (0.5, 0.5), color, bold=True, plate=PAPER)
 
 
 def _working(cell: Cell, start: Place, column: float, height: float, letters: float) -> Iterator[Line]:
     """Each crossing worked out, in two columns, and then what is ambiguous."""
-    columns = 1 if len(cell.crossings) + len(cell.ambiguous) <= ONE_COLUMN else 2
-    crossings = list(cell_words.crossing_lines(cell, short=columns > 1))
-    if not crossings:
+    if not cell.crossings:
         return
-    yield Line("edge A-B:  t = A / (A \u2212 B)", start, 0.8 * letters, bold=True)
-    rows, faces = -(-len(crossings) // columns), list(cell_words.face_lines(cell))
-    step = min(LINE_STEP * letters, height / (rows + len(faces) + 1.5))
+    columns = 1 if len(cell.crossings) + len(cell.ambiguous) <= ONE_COLUMN else 2
+    rows, faces = -(-len(cell.crossings) // columns), list(cell_words.face_lines(cell))
+    beside = 1 if len(faces) <= 3 else 2
+    step = min(LINE_STEP * letters, height / (rows + -(-len(faces) // beside) + 1.5))
     size = 0.92 * step / LINE_STEP
-    for index, line in enumerate(crossings):
-        across, down = divmod(index, rows)
-        yield Line(line, (start[0] + across * column, start[1] - (down + 1.15) * step), size)
+    tables = [cell.crossings[first:first + rows] for first in range(0, len(cell.crossings), rows)]
+    for index, crossings in enumerate(tables):
+        corner = (start[0] + index * column, start[1])
+        yield from _table(crossings, corner, 1.9 * column / columns, step, size, brief=columns > 1)
     for index, line in enumerate(faces):
-        yield Line(line, (start[0], start[1] - (rows + 1.4 + index) * step), size, color="#8a2f68", bold=True)
+        down, across = divmod(index, beside)
+        place = (start[0] + across * column, start[1] - (rows + 1.4 + down) * step)
+        yield Line(line, place, size, color=WARNING, bold=True)
+
+
+def _table(crossings: tuple[Crossing, ...], corner: Place, width: float, step: float, size: float, *,
+           brief: bool) -> Iterator[Line]:
+    """Edges and how far along each the surface crosses; not ``brief``, with the values that say so."""
+    heads = ("edge", "t") if brief else ("edge", "A", "B", "t = A / (A \u2212 B)")
+    places = (0.0, 0.4) if brief else (0.0, 0.2, 0.42, 0.64)
+    rows: list[tuple[str, ...]] = [
+        (edge_name(each.edge), cell_words.signed(each.A), cell_words.signed(each.B), f"{each.t:.3f}")
+        for each in crossings]
+    if brief:
+        rows = [(row[0], row[-1]) for row in rows]
+    for down, row in enumerate([heads, *rows]):
+        for place, word in zip(places, row, strict=True):
+            at = (corner[0] + place * width, corner[1] - (down + 0.15 * (down > 0)) * step)
+            yield Line(word, at, size, color=INK if down else QUIET, bold=down > 0 and place == places[-1])
 
 
 def _chosen_case(model: Model, look: Look, case: int, count: int) -> list[Line]:

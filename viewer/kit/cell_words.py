@@ -43,24 +43,7 @@ def headline(cell: Cell, name: str) -> str:
     return f"{name}\ncase {cell.case} = {cell.binary} in binary: {count} triangle{'' if count == 1 else 's'}"
 
 
-def crossing_lines(cell: Cell, *, short: bool = False) -> Iterator[str]:
-    """One line for each crossed edge, with t worked out or, ``short``, just given."""
-    for crossing in cell.crossings:
-        if short:
-            yield f"{edge_name(crossing.edge)}:  t = {crossing.t:.3f}"
-            continue
-        A = signed(crossing.A).removeprefix("+")
-        yield f"{edge_name(crossing.edge)}:  {A} / ({A} {_taken(crossing.B)}) = {crossing.t:.3f}"
-
-
 def face_lines(cell: Cell) -> Iterator[str]:
     """One line for each ambiguous face."""
     for face in cell.ambiguous:
-        what = "joins" if face.joins_inside else "parts"
-        yield f"face {face.name}: saddle {signed(face.saddle, 2)} {what} the inside"
-
-
-def _taken(value: float) -> str:
-    """Minus a value, as one writes it: ``\u2212 0.25``, ``+ 1.2``."""
-    sign = "+" if value < 0.0 else "\u2212"
-    return f"{sign} {abs(value):.3g}"
+        yield f"{face.name}: saddle {signed(face.saddle, 2)}, {'joined' if face.joins_inside else 'parted'}"

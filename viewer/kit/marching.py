@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit import bits
-from viewer.kit.marching_grid import Grid, Topology, cells_touching, topology
+from viewer.kit.marching_grid import MOST_SAMPLES, Grid, Topology, cells_touching, topology
 
 METHODS = ("cubes", "tetrahedra")
 TOPOLOGIES = ("table", "trilinear")
@@ -54,6 +54,7 @@ def marching_cubes(values: ArrayLike, level: float = 0.0, spacing: Sequence[floa
 def table_surface(samples: NDArray[Any], level: float, method: str) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The surface in units of cells: vertices (n, 3) float64, triangles (m, 3) int32."""
     samples, grid = in_memory_order(samples)
+    level = rounded_level(samples, level)
     found = topology(is_inside(samples, level).view(np.uint8), grid.axes, method, cells_without_value(samples, grid))
     vertices = crossing_places(found, samples, level, grid)
     used = vertices_in_use(found)
@@ -63,12 +64,17 @@ def table_surface(samples: NDArray[Any], level: float, method: str) -> tuple[NDA
 
 
 def checked_samples(values: ArrayLike) -> NDArray[Any]:
-    """``values`` as an array of real numbers with three axes, each at least 2 long; raises ValueError."""
+    """``values`` as an array of real numbers with three axes, each at least 2 long; raises ValueError.
+
+    So it does for more than ``MOST_SAMPLES``.
+    """
     samples = np.asarray(values)
     if samples.dtype.kind not in "biuf":
         raise ValueError(f"values of type {samples.dtype} are not real numbers")
     if samples.ndim != 3 or min(samples.shape) < 2:
         raise ValueError(f"values of shape {samples.shape} are not three axes of at least 2 samples")
+    if samples.size > MOST_SAMPLES:
+        raise ValueError(f"values of shape {samples.shape} are {samples.size} samples, more than {MOST_SAMPLES}")
     if samples.dtype.kind == "b":
         return samples.view(np.uint8)
     if samples.dtype.kind == "f" and samples.dtype.itemsize not in (4, 8):
@@ -81,6 +87,14 @@ def in_memory_order(samples: NDArray[Any]) -> tuple[NDArray[Any], Grid]:
     turned = not samples.flags.c_contiguous and samples.flags.f_contiguous
     samples = samples.T if turned else np.ascontiguousarray(samples)
     return samples, Grid(samples.shape, (2, 1, 0) if turned else (0, 1, 2))
+
+
+def rounded_level(samples: NDArray[Any], level: float) -> float:
+    """The level as precise as the samples, whatever kind of number it is; infinite where it is beyond them all."""
+    if samples.dtype.kind != "f":
+        return level
+    with np.errstate(over="ignore"):
+        return float(samples.dtype.type(level))
 
 
 def is_inside(samples: NDArray[Any], level: float) -> NDArray[np.bool_]:
@@ -106,8 +120,9 @@ def crossing_places(found: Topology, samples: NDArray[Any], level: float, grid: 
     starts = found.crossings >> np.uint32(3)
     directions = (found.crossings & np.uint32(7)).astype(np.intp)
     ends = starts + np.array([grid.offset(direction) for direction in range(8)], np.uint32)[directions]
-    flat, zero = samples.reshape(-1), np.float64(samples.dtype.type(level) if samples.dtype.kind == "f" else level)
-    A, B = (flat.take(ends_of).astype(np.float64) - zero for ends_of in (starts, ends))
+    flat = samples.reshape(-1)
+    with np.errstate(all="ignore"):
+        A, B = (flat.take(ends_of).astype(np.float64) - level for ends_of in (starts, ends))
     steps = (np.arange(8)[:, None] >> np.arange(3) & 1).astype(np.float64)
     places: NDArray[np.float64] = grid.coordinates(starts) + crossing_fraction(A, B)[:, None] * steps[directions]
     return places

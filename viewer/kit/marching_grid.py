@@ -21,6 +21,7 @@ Index: TypeAlias = NDArray[np.intp]
 Bytes: TypeAlias = NDArray[np.uint8]
 
 CELL = 7                    # all three axes: the direction from a cell's lowest corner to its highest
+MOST_SAMPLES = 1 << 29      # eight times a sample's number, and its direction, take 32 bits
 SLAB_SAMPLES = 1 << 18      # a slab's table of vertex numbers stays in the processor's cache
 
 
@@ -88,6 +89,12 @@ def topology(inside: Bytes, axes: tuple[int, int, int] = (0, 1, 2), method: str 
     slabs = [_Slab(grid, table, edges, cells, cases, *layers) for layers in _layers(grid)]
     triangles, owners = zip(*(slab.triangles(numbers) for slab in slabs), strict=True)
     return Topology(_crossing_names(edges, table), np.concatenate(triangles), cells, cases, np.concatenate(owners))
+
+
+def get_ready(grid: Grid, method: str) -> None:
+    """Work out what ``topology`` needs once for each method and shape of grid."""
+    for direction in (*packed_table(method).directions, CELL):
+        has_neighbour(grid, direction)
 
 
 def crossed_edges(signs: Words, grid: Grid, direction: int) -> Index:

@@ -7,7 +7,6 @@ at the upper left, and in each a cell.
 from __future__ import annotations
 
 import math
-import re
 from typing import TypeAlias
 
 import numpy as np
@@ -50,14 +49,6 @@ def place_seen(origin: NDArray[np.float64], direction: NDArray[np.float64]) -> P
         return None
     x, y, _ = 0.5 + 0.5 * (origin - origin[2] / direction[2] * direction)
     return (float(x), float(y)) if 0.0 <= x < 1.0 and 0.0 <= y < 1.0 else None
-
-
-def named_cell(name: str) -> tuple[int, int]:
-    """The column and the row in a text such as ``3,4``; raises ValueError."""
-    found = re.fullmatch(r"\s*(\d{1,9})\s*,\s*(\d{1,9})\s*", name, re.ASCII)
-    if not found:
-        raise ValueError(f"{name} is not a column and a row such as 3,4")
-    return int(found[1]), int(found[2])
 
 
 # The sheet of cases

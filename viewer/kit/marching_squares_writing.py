@@ -9,19 +9,20 @@ from numpy.typing import NDArray
 
 from viewer.kit.marching_squares_board import REACH, tile_corner
 from viewer.kit.sampled_square import SampledSquare
-from viewer.kit.square_cell_card import INK, QUIET, Line
+from viewer.kit.square_cell_card import INK, NARROW, QUIET, Line
 
 LONGEST_FORMULA = 72
 RIM = 0.5 * (1.0 + REACH)       # the middle of the board's margin
 IN_FRONT = 0.01
 
 
-def on_board(formula: str, square: SampledSquare, with_error: bool) -> Iterator[Line]:
+def on_board(formula: str, square: SampledSquare, with_error: bool, aspect: float) -> Iterator[Line]:
     """The axes, the ``formula`` below unless it is empty, and above how fine the grid is and what that costs."""
     for text, x, y in (("0", -1.0, -RIM), ("x", 0.0, -RIM), ("1", 1.0, -RIM),
                        ("0", -RIM, -1.0), ("y", -RIM, 0.0), ("1", -RIM, 1.0)):
         yield Line(text, (x, y, IN_FRONT), 0.75, (0.5, 0.5), QUIET)
-    short = formula if len(formula) <= LONGEST_FORMULA else formula[:LONGEST_FORMULA - 1] + "…"
+    longest = int(LONGEST_FORMULA * min(1.0, aspect))
+    short = formula if len(formula) <= longest else formula[:longest - 1] + "…"
     if formula:
         equation = f"{short} = {square.level:g}".replace("-", "−")
         yield Line(equation, (0.0, -REACH - 0.1, IN_FRONT), 0.85, (0.5, 0.5), INK)
@@ -31,13 +32,14 @@ def on_board(formula: str, square: SampledSquare, with_error: bool) -> Iterator[
                    INK, bold=True)
 
 
-def on_sheet(cases: NDArray[np.uint8]) -> Iterator[Line]:
-    """Under each case its number, in decimal and in binary, and how many cells of the board have it."""
+def on_sheet(cases: NDArray[np.uint8], aspect: float) -> Iterator[Line]:
+    """Under each case its number, in binary too where there is room, and how many cells of the board have it."""
     counts = np.bincount(cases.ravel(), minlength=17)
     for case in range(16):
         x, y = tile_corner(case)
         left, right, height = 2.0 * x - 1.0 + 0.05, 2.0 * x - 0.5 - 0.05, 2.0 * y - 1.0 + 0.085
-        yield Line(f"{case} = {case:04b}", (left, height, IN_FRONT), 0.62, (0.0, 0.5), INK if counts[case] else QUIET)
+        number = f"{case} = {case:04b}" if aspect >= NARROW else str(case)
+        yield Line(number, (left, height, IN_FRONT), 0.62, (0.0, 0.5), INK if counts[case] else QUIET)
         if counts[case]:
             yield Line(f"× {counts[case]}", (right, height, IN_FRONT), 0.62, (1.0, 0.5), INK, bold=True)
 

@@ -79,7 +79,7 @@ def box_edges() -> tuple[NDArray[np.float32], NDArray[np.float32]]:
 
 
 def in_picture(points: ArrayLike, frame: Frame, view: NDArray[np.float64], aspect: float) -> NDArray[np.float64]:
-    """Where points (n, 3) of a frame's unit cell appear in the picture, (n, 2), as lib/frame_model.glsl has it."""
+    """Where points (n, 3) of a frame's unit cell appear in the picture, (n, 2), as insets/placing.glsl has it."""
     turned = (np.asarray(points, np.float64).reshape(-1, 3) - 0.5) @ view[:3, :3]
     return np.asarray(np.array([frame[0], frame[1]]) + frame[2] * turned[:, :2] / np.array([aspect, 1.0]))
 

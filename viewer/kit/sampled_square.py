@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.kit.formula import Formula
 from viewer.kit.level_curve import Function, distances, jumping
 from viewer.kit.marching_squares import AMBIGUOUS, NOT_A_VALUE, Tracing, cell_cases, curve_count, trace
 from viewer.kit.square_cell import SquareCell
@@ -17,6 +18,20 @@ Flags: TypeAlias = NDArray[np.bool_]
 
 RUNGS = (4, 8, 16, 32, 64, 128, 256)    # resolutions at which the error is plotted
 PLACES = np.linspace(0.0, 1.0, 5)       # along a segment, where its distance to the true curve is taken
+
+
+@dataclass(frozen=True)
+class FormulaAt:
+    """A formula in x and y at one moment, with its numbers; two that are equal have the same values."""
+
+    formula: Formula
+    time: float
+    numbers: tuple[tuple[str, float], ...]
+
+    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The values (n,) at ``points`` (n, 2), in double precision."""
+        values = self.formula.evaluate(x=points[:, 0], y=points[:, 1], t=self.time, **dict(self.numbers))
+        return np.asarray(values, np.float64)
 
 
 @dataclass(frozen=True)
@@ -80,6 +95,7 @@ class SampledSquare:
         }
 
 
+@lru_cache(maxsize=2)
 def sample(function: Function, resolution: int, level: float = 0.0, saddle: str = "decider",
            jumps: str = "cut") -> SampledSquare:
     """``function`` sampled on a grid of ``resolution`` x ``resolution`` cells and traced through ``level``.
@@ -112,6 +128,7 @@ def jumping_cells(function: Function, values: NDArray[np.float64], level: float)
     return jumps
 
 
+@lru_cache(maxsize=2)
 def errors_by_resolution(function: Function, level: float, saddle: str, jumps: str) -> NDArray[np.float64]:
     """The largest distance to the true curve at each of ``RUNGS``."""
-    return np.array([sample(function, rung, level, saddle, jumps).max_distance for rung in RUNGS])
+    return np.array([sample.__wrapped__(function, rung, level, saddle, jumps).max_distance for rung in RUNGS])

@@ -32,6 +32,7 @@ class Line:
     align: Place = (0.0, 0.5)
     color: str = INK
     bold: bool = False
+    plate: str = ""
 
 
 @dataclass(frozen=True)
