@@ -97,7 +97,8 @@ class MarchingCubes(Scene):
         marks: bool = toggle(True, "Purple dots in cells that yield nothing, for want of a value or at a jump",
                              group="Look")
         cell: str = text("", "The cell under the microscope; a click chooses one",
-                         pattern=r"\d{1,6}( *, *\d{1,6}){2}", example="3,0,7", group="Cell microscope", when="view=surface")
+                         pattern=r"\d{1,6}( *, *\d{1,6}){2}", example="3,0,7",
+                         group="Cell microscope", when="view=surface")
         walk: bool = toggle(False, "Visit the surface's cells one by one, as time goes on", group="Cell microscope",
                             when="view=surface")
         cells_per_second: float = slider(3.0, 0.1, 10000.0, "How fast the walk goes", logarithmic=True,
@@ -110,12 +111,12 @@ class MarchingCubes(Scene):
     def __init__(self, gpu: Gpu, params: Params) -> None:
         self.gpu, self.params = gpu, params
         self.volume = read_volume(params.volume) if params.source == "volume" and params.volume else None
-        field = {"generated/case_classes.glsl": case_classes_glsl}
+        looks = {"generated/case_classes.glsl": case_classes_glsl, "generated/look.glsl": self.look_glsl}
         include = (lambda: VOLUME_FIELD) if params.source == "volume" else self.formula_field
         self.samples = FieldSamples(gpu, None if params.source == "volume" else include)
         self.surface, self.other = (Isosurface(gpu, self.samples, include) for _ in range(2))
-        smooth = gpu.program("marching_cubes/surface.vert", "marching_cubes/surface.frag", generated=field)
-        wired = gpu.program("marching_cubes/wire.vert", "marching_cubes/surface.frag", generated=field)
+        smooth = gpu.program("marching_cubes/surface.vert", "marching_cubes/surface.frag", generated=looks)
+        wired = gpu.program("marching_cubes/wire.vert", "marching_cubes/surface.frag", generated=looks)
         self.slice_plane = gpu.program("marching_cubes/slice.vert", "marching_cubes/slice.frag")
         self.programs = [smooth, wired, self.slice_plane]
         self.smooth = {mesh: gpu.vertex_array(smooth, index=mesh.indices) for mesh in (self.surface, self.other)}
@@ -138,6 +139,13 @@ class MarchingCubes(Scene):
     def formula_field(self) -> str:
         """The formula as the field that is sampled."""
         return formula_include(self.params, "formula") + FORMULA_FIELD
+
+    def look_glsl(self) -> str:
+        """What the surface's shader has to do, as constants: software GL would do the rest as well."""
+        p = self.params
+        colouring = p.field("colouring").uniform(p.colouring)
+        return (f"const int COLOURING = {colouring};\nconst bool WIREFRAME = {str(p.wireframe).lower()};\n"
+                f"const bool ONE_CASE = {str(p.case >= 0).lower()};\n")
 
     # Making the surface
 
@@ -251,7 +259,7 @@ class MarchingCubes(Scene):
         mesh.bind(PLACES, NORMALS)
         array = (self.wired if self.params.wireframe else self.smooth)[mesh]
         array.program["u_world_offset"] = tuple(offset * self.view[:3, 0])       # aside, as the camera sees it
-        array.program["u_method"] = int((self.params.method == "tetrahedra") == (mesh is self.surface))
+        array.program["u_method_drawn"] = int((self.params.method == "tetrahedra") == (mesh is self.surface))
         self.gpu.context.enable_direct(CLIP_DISTANCE)
         array.render(vertices=count)
         self.gpu.context.disable_direct(CLIP_DISTANCE)

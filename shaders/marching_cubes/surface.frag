@@ -4,15 +4,16 @@
 #include "lib/color.glsl"
 #include "lib/grid.glsl"
 #include "marching_cubes/cell.glsl"
+#include "generated/look.glsl"          // COLOURING, ONE_CASE, WIREFRAME: what is not wanted costs nothing
 #include "generated/case_classes.glsl"
 
-uniform int u_colouring;              // 0 surface, 1 normal, 2 curvature, 3 case, 4 difference
+const int NORMAL = 1, CURVATURE = 2, CASE = 3, DIFFERENCE = 4;        // 0 is a lit surface
+
 uniform vec3 u_color;
 uniform float u_curvature_scale;      // the curvature at the ends of the colours
 uniform float u_difference_scale;     // the distance at their bright end, in cells
-uniform int u_method;                 // 0 cubes, 1 tetrahedra
-uniform int u_case;                   // show cells of this case alone; -1 for all
-uniform bool u_wireframe;
+uniform int u_method_drawn;           // 0 cubes, 1 tetrahedra
+uniform int u_case;                   // the case whose cells are shown
 uniform bool u_painted_side;          // which side has the colour: true where values are larger
 
 in vec3 v_place;
@@ -33,7 +34,7 @@ vec3 case_color(int number) {
 
 // Where the other method would put the surface, in cells away from here.
 float difference(vec3 s) {
-    float other = u_method == 0 ? tetrahedra_value(s) : trilinear_value(s);
+    float other = u_method_drawn == 0 ? tetrahedra_value(s) : trilinear_value(s);
     vec3 slope = vec3(0.0);
     for (int axis = 0; axis < 3; axis++) {
         vec3 aside = vec3(0.0);
@@ -55,18 +56,18 @@ void main() {
     vec3 facing = larger ? normal : -normal;
     vec3 s = (v_place - u_grid_corner) / u_grid_step;
     vec3 paint = painted ? u_color : INNER;
-    if (u_colouring == 2)
+    if (COLOURING == CURVATURE)
         paint = viridis(0.5 + 0.5 * v_bend / u_curvature_scale);
-    if (u_colouring == 3)
+    if (COLOURING == CASE)
         paint = case_color(cell_case(s));
-    if (u_colouring == 4)
+    if (COLOURING == DIFFERENCE)
         paint = viridis(difference(s) / u_difference_scale);
-    if (u_case >= 0 && cell_case(s) != u_case)
+    if (ONE_CASE && cell_case(s) != u_case)
         paint = mix(vec3(dot(paint, vec3(0.33))), vec3(0.5), 0.75);
     vec3 color = studio_light(v_position, facing, paint, 0.38);
-    if (u_colouring == 1)
+    if (COLOURING == NORMAL)
         color = linear_light(0.5 + 0.5 * normal);
-    if (u_wireframe)
+    if (WIREFRAME)
         color = mix(color, WIRE, 0.85 * wire_cover());
     out_color = vec4(color, 1.0);
 }

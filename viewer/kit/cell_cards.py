@@ -66,7 +66,7 @@ def microscope_card(cell: Cell, name: str, look: Look, triangles: NDArray[np.flo
         frame = (-0.5, -0.60, min(0.38, 0.42 * look.aspect))
     letters = min(1.0, 0.72 * look.aspect if not narrow else 1.1 * look.aspect)
     head = list(_headline(cell, name, (left + 0.03, top - 0.065), letters))
-    start = (0.02, -0.18) if narrow else (left + 0.03, -0.30)
+    start = (0.02, -0.27) if narrow else (left + 0.03, -0.35)
     text = list(_working(cell, start, (right - start[0]) / 2.0, start[1] - bottom - 0.03, letters))
     model = microscope_model(cell, frame, look.surface, look.tetrahedra, triangles)
     return CellCard(rectangle, model, (*head, *_corner_labels(cell, frame, look, letters), *text))
