@@ -32,6 +32,7 @@ from viewer import (
     formula,
     formula_include,
     integer,
+    room_for_samples,
     slider,
     text,
     toggle,
@@ -110,7 +111,8 @@ class MarchingCubes(Scene):
 
     def __init__(self, gpu: Gpu, params: Params) -> None:
         self.gpu, self.params = gpu, params
-        self.volume = read_volume(params.volume) if params.source == "volume" and params.volume else None
+        has_volume = params.source == "volume" and params.volume
+        self.volume = read_volume(params.volume, room_for_samples()) if has_volume else None
         looks = {"generated/case_classes.glsl": case_classes_glsl, "generated/look.glsl": self.look_glsl}
         include = (lambda: VOLUME_FIELD) if params.source == "volume" else self.formula_field
         self.samples = FieldSamples(gpu, None if params.source == "volume" else include)
@@ -322,9 +324,12 @@ class MarchingCubes(Scene):
             self.card = cell_cards.sheet_card(look, self.case_counts(), p.case)
         elif chosen:
             cell = self.examined(chosen)
-            self.card = cell_cards.microscope_card(cell, "Cell {}, {}, {}".format(*chosen), look, self.decided(cell))
+            name = "Cell {}, {}, {}".format(*chosen)
+            if p.walk and len(self.surface.found.cells):
+                name += f"   ({self.walked_to() + 1} of {len(self.surface.found.cells)})"
+            self.card = cell_cards.microscope_card(cell, name, look, self.decided(cell))
             low, high = self.in_world(np.array([chosen, np.array(chosen) + 1], np.float64))
-            self.card.model.box(low, high, 0.006, rgb("#16181c"))
+            self.card.model.box(low, high, max(0.0022, min(0.006, 0.07 * float(high[0] - low[0]))), rgb("#16181c"))
         self.inset.card = self.card.rectangle if self.card else None
         self.inset.show(self.card.model if self.card else Model())
 
@@ -348,10 +353,15 @@ class MarchingCubes(Scene):
                     for line in self.card.lines]
         if self.params.view != "compare":
             return ()
-        methods = {"cubes": -APART, "tetrahedra": APART}
         meshes = {self.params.method: self.surface}
-        return [Label(f"{method}\n{meshes.get(method, self.other).count // 3:,} triangles".replace(",", "\u2009"),
-                      (0.5 * x, -0.86), 1.1, plate="#f4f2edd8", bold=True) for method, x in methods.items()]
+        return [self.caption(method, meshes.get(method, self.other).count // 3, x)
+                for method, x in (("cubes", -APART), ("tetrahedra", APART))]
+
+    def caption(self, method: str, triangles: int, aside: float) -> Label:
+        """What stands under one of two surfaces."""
+        x, y, z = (float(along) for along in aside * self.view[:3, 0] - (0.0, 1.0, 0.0))
+        return Label(f"{method}\n{triangles:,} triangles".replace(",", "\u2009"), (x, y, z), 1.1,
+                     plate="#f4f2edd8", bold=True)
 
     def click(self, click: Click) -> Mapping[str, object]:
         if self.params.view == "cases" and self.card:

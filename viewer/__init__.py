@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         text,
         toggle,
     )
-    from viewer.engine.field_samples import FieldSamples, Lattice
+    from viewer.engine.field_samples import FieldSamples, Lattice, room_for_samples
     from viewer.engine.fields import ParameterError
     from viewer.engine.formula_shader import formula_include
     from viewer.engine.gpu import Gpu
@@ -66,6 +66,7 @@ __all__ = [
     "integer",
     "interval",
     "render",
+    "room_for_samples",
     "slider",
     "text",
     "toggle",

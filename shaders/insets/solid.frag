@@ -13,5 +13,5 @@ void main() {
     vec3 normal = normalize(v_normal), to_eye = normalize(v_to_eye);
     bool behind = dot(normal, to_eye) < 0.0;
     vec3 color = linear_light(v_color);
-    out_color = vec4(model_light(behind ? -normal : normal, to_eye, behind ? 0.5 * color : color), 1.0);
+    out_color = vec4(model_light(behind ? -normal : normal, to_eye, behind ? 0.66 * color : color), 1.0);
 }

@@ -20,7 +20,8 @@ Sides = NDArray[np.uint8]
 
 OUTSIDE, INSIDE, NO_VALUE = 0, 1, 2
 MOST_SAMPLES = 2**27            # their numbers, and three bits more, have to fit in 32 bits
-BYTES_PER_SAMPLE = 10           # value and side on the GPU, side and bits here, and room to work
+FEW_SAMPLES = 2**22             # for which no machine need be asked whether it has the memory
+BYTES_PER_SAMPLE = 16           # value and side on the GPU, value, side and bits here, and room to work
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,13 @@ class Lattice:
         """How their values lie in an array: indexed [z, y, x]."""
         nx, ny, nz = self.samples
         return Grid((nz, ny, nx), (2, 1, 0))
+
+
+def room_for_samples() -> int:
+    """How many samples this machine has the memory for just now, at most ``MOST_SAMPLES``."""
+    import psutil
+
+    return int(min(MOST_SAMPLES, psutil.virtual_memory().available // BYTES_PER_SAMPLE))
 
 
 class FieldSamples:
@@ -142,9 +150,9 @@ class FieldSamples:
 
     def _check(self, lattice: Lattice, size: tuple[int, int]) -> None:
         nx, ny, nz = lattice.samples
-        if lattice.count > MOST_SAMPLES:
-            raise GpuError(f"{nx} x {ny} x {nz} samples need {lattice.count * BYTES_PER_SAMPLE / 2**30:.1f} GiB; "
-                           f"at most {MOST_SAMPLES * BYTES_PER_SAMPLE / 2**30:.1f} GiB is allowed")
+        if lattice.count > FEW_SAMPLES and lattice.count > (most := room_for_samples()):
+            raise GpuError(f"{nx} x {ny} x {nz} samples need {lattice.count * BYTES_PER_SAMPLE / 2**30:.2f} GiB; "
+                           f"{most * BYTES_PER_SAMPLE / 2**30:.2f} GiB are to be had")
         self.gpu.check_size(size, f"a grid of {nx} x {ny} x {nz} samples, in a texture")
 
 

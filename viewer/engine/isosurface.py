@@ -169,11 +169,11 @@ class Isosurface:
 
     def _run(self, name: str, rows: NDArray[Any], components: int, dtype: str, wanted: Wanted) -> None:
         """Let the pass ``name`` make a vertex of each row."""
-        self.vertex_count = len(rows)
         lines = -(-len(rows) // WIDTH)
+        self._make_room(lines)
+        self.vertex_count = len(rows)
         if not lines:
             return
-        self._make_room(lines)
         given = self._given_to(name)
         padded = np.zeros((lines * WIDTH, components), dtype)
         padded[:len(rows)] = rows.reshape(-1, components)
@@ -223,9 +223,10 @@ class Isosurface:
         """Textures of at least ``lines`` rows."""
         if lines <= self._rows:
             return
-        self._rows = int(1.25 * lines) + 1
+        size = (WIDTH, int(1.25 * lines) + 1)
+        self.gpu.check_size(size, f"a surface of {lines * WIDTH} vertices, in a texture")
         self.gpu.discard(*self._made)
-        size = (WIDTH, self._rows)
+        self._rows = size[1]
         self._edges = self.gpu.texture(size, 1, dtype="u4", label="crossings")
         self._given = None
         self.places = self.gpu.texture(size, 4, dtype="f4", label="places")

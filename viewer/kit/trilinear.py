@@ -22,14 +22,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit.trilinear_cell import CROSSED
-from viewer.kit.trilinear_grid import Cells, Field, Indices, corner_values, grid_crossings, mixed_cells
+from viewer.kit.trilinear_grid import (
+    Cells,
+    Grid,
+    Indices,
+    grid_crossings,
+    grid_of,
+    mixed_cells,
+    samples_without_value,
+)
 from viewer.kit.trilinear_patch import CROSSINGS, patch
 from viewer.kit.trilinear_point import hub_points, waist_points
 
 Vertices = NDArray[np.float64]
 Triangles = NDArray[np.int32]
-
-TINY, HUGE = 1e-50, 1e50    # values whose products, squared, are well within a float's range
 
 
 class _Patches(NamedTuple):
@@ -44,35 +50,19 @@ def trilinear_surface(values: ArrayLike, level: float) -> tuple[Vertices, Triang
     """The surface where the trilinear interpolant of ``values`` (nx, ny, nz) is ``level``.
 
     Returns vertices (n, 3) in units of the grid, ``values[i, j, k]`` being at (i, j, k), and triangles (m, 3),
-    counter-clockwise seen from larger values. A value at the level counts as larger. Cells with a sample that
-    is not finite are left out.
+    counter-clockwise seen from larger values. A value at the level counts as larger; so does float32 0.1 at the
+    level 0.1, which is rounded as the values are. Cells with a sample that is not finite are left out.
     """
-    field = _excess(values, level)
-    finite = np.isfinite(field)
-    whole = bool(finite.all())
-    if not whole:
-        field[~finite] = 0.0
-    cells = mixed_cells(field, None if whole else finite)
+    grid = grid_of(values, level)
+    without = samples_without_value(grid)
+    cells = mixed_cells(grid, without)
     if not len(cells.origin):
         return np.empty((0, 3)), np.empty((0, 3), np.int32)
-    crossings, on_edges = grid_crossings(field, cells)
+    crossings, on_edges = grid_crossings(grid, cells)
     patches = _patches(cells)
-    points = _points(field, cells, patches, crossings, on_edges)
-    vertices = np.concatenate([crossings, points])
+    vertices = np.concatenate([crossings, _points(grid, cells, patches, crossings, on_edges)])
     triangles = _triangles(patches, on_edges, len(crossings))
-    return (vertices, triangles) if whole else _used(vertices, triangles)
-
-
-def _excess(values: ArrayLike, level: float) -> Field:
-    """The values minus the level, scaled by a power of two where their products would leave a float's range."""
-    samples = np.asarray(values, np.float64)
-    if samples.ndim != 3:
-        raise ValueError(f"values: a grid (nx, ny, nz) is needed, not an array of shape {samples.shape}")
-    field = samples - float(level)
-    size = np.maximum(np.fmax.reduce(field, axis=None, initial=0.0), -np.fmin.reduce(field, axis=None, initial=0.0))
-    if np.isfinite(size) and size > 0.0 and not TINY < size < HUGE:
-        field = np.ldexp(field, -int(np.frexp(size)[1]))
-    return field
+    return (vertices, triangles) if without is None else _used(vertices, triangles)
 
 
 def _patches(cells: Cells) -> _Patches:
@@ -105,13 +95,12 @@ def _run_places(runs: tuple[Indices, Indices]) -> tuple[Indices, Indices]:
     return np.repeat(first - before, length) + np.arange(length.sum()), np.repeat(np.arange(len(length)), length)
 
 
-def _points(field: Field, cells: Cells, patches: _Patches, crossings: Vertices,
+def _points(grid: Grid, cells: Cells, patches: _Patches, crossings: Vertices,
             on_edges: NDArray[np.int32]) -> Vertices:
     """The vertices inside cells, cell by cell."""
     place, owner = _run_places(patches.point_runs)
     what = patches.points[place]
-    corners = corner_values(field, cells.origin[owner])
-    base = np.stack(np.unravel_index(cells.origin[owner], field.shape), axis=1).astype(np.float64)
+    corners, base = grid.corners(cells.origin[owner]), grid.coordinates(cells.origin[owner])
     waist, hub = np.flatnonzero(what < 0), np.flatnonzero(what > 0)
     base[waist] += waist_points(corners[waist], -1 - what[waist])
     chosen = (what[hub, None] >> np.arange(CROSSINGS) & 1).astype(np.bool_)

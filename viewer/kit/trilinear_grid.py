@@ -2,18 +2,44 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit.trilinear_cell import CORNERS, DOUBTFUL, EDGES
 from viewer.kit.trilinear_decision import joined_faces, tunnels
 
 Indices = NDArray[np.intp]
-Field = NDArray[np.float64]
+Values = NDArray[np.float64]
 
 CLEARANCE = 1e-4    # a crossing's least distance from the ends of its edge, so that no triangle shrinks to nothing
+
+
+class Grid(NamedTuple):
+    """The samples, in one piece of memory, and the level as precise as they are, so that a sample may be at it."""
+    samples: NDArray[Any]
+    level: float
+
+    @property
+    def strides(self) -> NDArray[np.int64]:
+        """How many samples further neighbours along each axis are."""
+        return np.array([self.samples.shape[1] * self.samples.shape[2], self.samples.shape[2], 1])
+
+    def excess(self, places: Indices) -> Values:
+        """The samples at flat ``places`` minus the level."""
+        with np.errstate(over="ignore"):
+            return self.samples.reshape(-1).take(places).astype(np.float64) - self.level
+
+    def coordinates(self, places: Indices) -> Values:
+        """The points (n, 3) of the samples at flat ``places``."""
+        return np.stack(np.unravel_index(places, self.samples.shape), axis=1).astype(np.float64)
+
+    def corners(self, origin: Indices) -> Values:
+        """The excess (n, 8) at the corners of cells, times a power of two that lets one multiply without care."""
+        corners = self.excess(origin[:, None] + CORNERS @ self.strides)
+        largest = max(corners.max(initial=0.0), -corners.min(initial=0.0))
+        return np.asarray(np.ldexp(corners, -np.frexp(largest)[1]))
 
 
 class Cells(NamedTuple):
@@ -24,53 +50,69 @@ class Cells(NamedTuple):
     tunnel: NDArray[np.int64]
 
 
-def mixed_cells(field: Field, finite: NDArray[np.bool_] | None) -> Cells:
-    """The cells with corners on both sides of the level, those with a sample that is not finite left out."""
-    inside = (field < 0.0).view(np.uint8)
-    code = inside[:-1] | inside[1:] << 1
-    code = code[:, :-1] | code[:, 1:] << 2
-    code = code[..., :-1] | code[..., 1:] << 4
+def grid_of(values: ArrayLike, level: float) -> Grid:
+    """``values`` as a grid, their type kept if it has no more than a double's precision."""
+    samples = np.ascontiguousarray(values)
+    if samples.ndim != 3:
+        raise ValueError(f"values: a grid (nx, ny, nz) is needed, not an array of shape {samples.shape}")
+    if samples.dtype not in (np.float32, np.float64):
+        samples = samples.astype(np.float64)
+    with np.errstate(over="ignore"):
+        return Grid(samples, float(samples.dtype.type(level)))
+
+
+def samples_without_value(grid: Grid) -> NDArray[np.bool_] | None:
+    """Which samples are not finite; None if all are."""
+    with np.errstate(all="ignore"):
+        if np.isfinite(grid.samples.sum()):    # faster than asking each
+            return None
+    without = ~np.isfinite(grid.samples)
+    return without if without.any() else None
+
+
+def mixed_cells(grid: Grid, without: NDArray[np.bool_] | None) -> Cells:
+    """The cells with corners on both sides of the level, but for those with a sample ``without`` a value."""
+    code = (grid.samples < grid.level).view(np.uint8)
+    code = code[:-1] | code[1:] << np.uint8(1)
+    code = code[:, :-1] | code[:, 1:] << np.uint8(2)
+    code = code[..., :-1] | code[..., 1:] << np.uint8(4)
     mixed = (code != 0) & (code != 255)
-    if finite is not None:
-        finite = finite[:-1] & finite[1:]
-        finite = finite[:, :-1] & finite[:, 1:]
-        mixed &= finite[..., :-1] & finite[..., 1:]
+    if without is not None:
+        without = without[:-1] | without[1:]
+        without = without[:, :-1] | without[:, 1:]
+        mixed &= ~(without[..., :-1] | without[..., 1:])
     place = np.flatnonzero(mixed)
-    origin = np.ravel_multi_index(np.unravel_index(place, mixed.shape), field.shape) if len(place) else place
-    case = code.reshape(-1)[place].astype(np.uint8, copy=False)
+    origin = np.ravel_multi_index(np.unravel_index(place, mixed.shape), grid.samples.shape) if len(place) else place
+    case = code.reshape(-1)[place]
     joined, tunnel = np.zeros((2, len(case)), np.int64)
     doubtful = np.flatnonzero(DOUBTFUL[case])
-    corners = corner_values(field, origin[doubtful])
+    corners = grid.corners(origin[doubtful])
     joined[doubtful], tunnel[doubtful] = joined_faces(corners, case[doubtful]), tunnels(corners)
     return Cells(origin, case, joined, tunnel)
 
 
-def corner_values(field: Field, origin: Indices) -> Field:
-    """The values (n, 8) at the corners of cells."""
-    return field.reshape(-1)[origin[:, None] + CORNERS @ strides(field)]
-
-
-def strides(field: Field) -> NDArray[np.int64]:
-    """How far apart in the flat grid neighbours along each axis are."""
-    return np.array([field.shape[1] * field.shape[2], field.shape[2], 1])
-
-
-def grid_crossings(field: Field, cells: Cells) -> tuple[Field, NDArray[np.int32]]:
+def grid_crossings(grid: Grid, cells: Cells) -> tuple[Values, NDArray[np.int32]]:
     """The vertices on the edges of the grid, at t = A / (A - B), and which of them each cell has on its 12 edges."""
-    flat, inside = field.reshape(-1), field < 0.0
-    number: NDArray[np.int32] = np.empty((3, flat.size), np.int32)
+    inside = grid.samples < grid.level
+    number: NDArray[np.int32] = np.empty((3, inside.size), np.int32)
     found, count = [], 0
-    for axis, stride in enumerate(strides(field)):
-        differs = np.zeros(field.shape, np.bool_)
+    for axis, stride in enumerate(grid.strides):
+        differs = np.zeros(inside.shape, np.bool_)
         low, high = ([slice(None)] * axis + [part] for part in (slice(None, -1), slice(1, None)))
         np.not_equal(inside[*low], inside[*high], out=differs[*low])
         place = np.flatnonzero(differs)
-        A, B = flat[place], flat[place + stride]
-        vertices = np.stack(np.unravel_index(place, field.shape), axis=1).astype(np.float64)
-        vertices[:, axis] += np.clip(A / (A - B), CLEARANCE, 1.0 - CLEARANCE)
-        number[axis, place] = np.arange(count, count + len(place))
+        vertices = grid.coordinates(place)
+        vertices[:, axis] += crossing_fraction(grid.excess(place), grid.excess(place + stride))
+        number[axis][place] = np.arange(count, count + len(place), dtype=np.int32)
         found.append(vertices)
         count += len(place)
     starts = np.array([start for start, _ in EDGES])
-    shift = np.repeat(np.arange(3), 4) * flat.size + (CORNERS @ strides(field))[starts]
-    return np.concatenate(found), number.reshape(-1)[cells.origin[:, None] + shift]
+    shift = np.repeat(np.arange(3), 4) * inside.size + (CORNERS @ grid.strides)[starts]
+    return np.concatenate(found), number.reshape(-1).take(cells.origin[:, None] + shift)
+
+
+def crossing_fraction(A: Values, B: Values) -> Values:
+    """Where between two samples of excess ``A`` and ``B`` a line is zero, kept from the ends; the middle if too far."""
+    with np.errstate(all="ignore"):
+        t = A / (A - B)
+    return np.clip(np.nan_to_num(t, nan=0.5), CLEARANCE, 1.0 - CLEARANCE)

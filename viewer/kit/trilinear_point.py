@@ -41,7 +41,8 @@ def waist_points(corners: Values, facing: NDArray[np.int64]) -> Points:
 def hub_points(corners: Values, middle: Points, alone: NDArray[np.bool_]) -> Points:
     """The ``middle`` of each cell's loop, moved to the trilinear surface where the loop is ``alone`` in its cell.
 
-    Among several loops it stays: the middle lies in the loop's convex hull, and the hulls do not meet.
+    Among several loops it stays in its own loop's convex hull. The others cut off single corners of the cell, and
+    a plane through the cuts parts such a corner from the hull.
     """
     points = middle.copy()
     moving = np.clip(middle[alone], HUB_MARGIN, 1.0 - HUB_MARGIN)
