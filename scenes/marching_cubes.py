@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from viewer import (
+    CellInspector,
     Click,
     ColorScale,
     FieldSamples,
     Geometry,
     Gpu,
-    Insets,
     Isosurface,
     Label,
     Lattice,
@@ -37,15 +36,14 @@ from viewer import (
     text,
     toggle,
 )
-from viewer.kit import cell_cards, cell_model, cell_words, marching_cell, surface_words
+from viewer.kit import cell_cards, cell_model, surface_words
+from viewer.kit.grid_box import GridBox
 from viewer.kit.mesh_measure import mesh_numbers
-from viewer.kit.models import Model, rgb
 from viewer.kit.trilinear import trilinear_surface
 from viewer.kit.volume_file import SUFFIXES, read_volume
 
 TANGLE = "16*(x^4 + y^4 + z^4) - 20*(x^2 + y^2 + z^2) + 11.8"
 PLACES, NORMALS, VALUES = 0, 1, 2               # texture units
-MOST_MARKS = 20_000
 APART = 0.92                                    # from the middle to either surface of a comparison
 CLIP_DISTANCE = 0x3000                          # GL_CLIP_DISTANCE0
 VOLUME_FIELD = '#include "isosurface/volume_field.glsl"\n'
@@ -125,10 +123,8 @@ class MarchingCubes(Scene):
         self.wired = {mesh: gpu.vertex_array(wired, [(mesh.indices, "1i", "in_index")])
                       for mesh in (self.surface, self.other)}
         self.slice_square = gpu.vertex_array(self.slice_plane, mode=moderngl.TRIANGLE_STRIP)
-        self.marks, self.inset = Insets(gpu), Insets(gpu)
-        self.card: cell_cards.CellCard | None = None
-        self.made: object = None
-        self.laid_out: object = None
+        self.inspector = CellInspector(gpu, self.surface)
+        self.made: Hashable = None
         self.set_up_volume()
 
     def set_up_volume(self) -> None:
@@ -149,6 +145,11 @@ class MarchingCubes(Scene):
         return (f"const int COLOURING = {colouring};\nconst bool WIREFRAME = {str(p.wireframe).lower()};\n"
                 f"const bool ONE_CASE = {str(p.case >= 0).lower()};\n")
 
+    @property
+    def level(self) -> float:
+        """The level as the GPU has it, in single precision."""
+        return float(np.float32(self.params.level))
+
     # Making the surface
 
     def prepare(self) -> None:
@@ -160,7 +161,7 @@ class MarchingCubes(Scene):
         self.describe()
         self.set_up_card()
 
-    def wanted(self) -> object:
+    def wanted(self) -> Hashable:
         """Everything that the surface depends on."""
         p = self.params
         moment = self.time if p.source == "formula" and "t" in p.formula.variables else 0.0
@@ -170,7 +171,7 @@ class MarchingCubes(Scene):
 
     def make(self) -> None:
         """Sample the field, and make the surface or, for a comparison, two."""
-        p, level = self.params, float(np.float32(self.params.level))
+        p, level = self.params, self.level
         if p.source == "formula":
             n, reach = p.resolution, p.extent
             self.samples.evaluate(Lattice((n + 1,) * 3, (-reach,) * 3, (2.0 * reach / n,) * 3), level)
@@ -183,53 +184,33 @@ class MarchingCubes(Scene):
         self.extract(self.surface, p.method)
         if p.view == "compare":
             self.extract(self.other, "tetrahedra" if p.method == "cubes" else "cubes")
-        self.mark()
+        self.inspector.mark_gaps(self.box)
 
     def extract(self, mesh: Isosurface, method: str) -> None:
         """Make one surface of the samples."""
         p = self.params
-        wanted = Wanted(float(np.float32(p.level)), method, cut_jumps=p.source == "formula" and p.jumps == "cut",
+        wanted = Wanted(self.level, method, cut_jumps=p.source == "formula" and p.jumps == "cut",
                         curvature=p.colouring == "curvature", in_order=p.walk)
         if method == "cubes" and p.topology == "trilinear":
             mesh.take(lambda: trilinear_surface(self.samples.read_all().T, wanted.level), wanted)
         else:
             mesh.extract(wanted)
 
-    def mark(self) -> None:
-        """A dot in each cell next to the surface's samples that yields nothing."""
-        model, mesh = Model(), self.surface
-        if mesh.left_out is not None:
-            cells = mesh.gaps()
-            middles = self.in_world(self.samples.lattice.grid.coordinates(cells[::1 + len(cells) // MOST_MARKS]) + 0.5)
-            model.balls(middles, 0.18 * self.world_scale * min(self.samples.lattice.step), rgb(cell_model.NO_VALUE))
-        self.marks.show(model)
-
-    # Where the grid stands in the world: its longest side from -1 to 1
-
     @property
-    def reach(self) -> NDArray[np.float64]:
-        """Half the size of the grid, in the field's own space."""
+    def box(self) -> GridBox:
+        """Where the grid stands in the world."""
         lattice = self.samples.lattice
-        return np.asarray(0.5 * np.array(lattice.step) * (np.array(lattice.samples) - 1))
-
-    @property
-    def world_scale(self) -> float:
-        """How large a unit of the field's space is in the world."""
-        return float((0.68 if self.params.view == "compare" else 1.0) / self.reach.max())
-
-    def in_world(self, samples: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Where places given in samples (n, 3) stand."""
-        return np.asarray((samples * np.array(self.samples.lattice.step) - self.reach) * self.world_scale)
+        return GridBox(lattice.samples, lattice.corner, lattice.step, 0.68 if self.params.view == "compare" else 1.0)
 
     def describe(self) -> None:
         """Tell the shaders where everything is."""
-        corner, scale = np.array(self.samples.lattice.corner), self.world_scale
+        box = self.box
         for program in self.programs:
             self.samples.describe_to(program)
-            program["u_slice_reach"] = tuple(self.reach)
-            program["u_world_middle"], program["u_world_scale"] = tuple(corner + self.reach), scale
+            program["u_slice_reach"] = tuple(box.reach)
+            program["u_world_middle"], program["u_world_scale"] = tuple(box.middle), box.scale
             program["u_world_offset"] = (0.0, 0.0, 0.0)
-            program["u_surface_level"] = float(np.float32(self.params.level))
+            program["u_surface_level"] = self.level
             program["u_places"], program["u_normals"], program["u_values"] = PLACES, NORMALS, VALUES
             program["u_painted_side"] = self.params.source == "formula"
 
@@ -267,10 +248,7 @@ class MarchingCubes(Scene):
         self.gpu.context.disable_direct(CLIP_DISTANCE)
 
     def draw_over(self) -> None:
-        if self.params.view != "cases" and self.params.marks and self.params.view != "compare":
-            self.marks.draw()
-        if self.card:
-            self.inset.draw()
+        self.inspector.draw(marks=self.params.marks and self.params.view == "surface")
 
     def color_scale(self) -> ColorScale | None:
         p = self.params
@@ -301,58 +279,29 @@ class MarchingCubes(Scene):
         if not self.params.cell.strip():
             return None
         x, y, z = (int(part) for part in self.params.cell.split(","))
-        inside = all(0 <= at < count - 1 for at, count in zip((x, y, z), self.samples.lattice.samples, strict=True))
-        return (x, y, z) if inside else None
-
-    def examined(self, cell: tuple[int, int, int]) -> marching_cell.Cell:
-        """The cell, with its samples read back from the GPU."""
-        grid = self.samples.lattice.grid
-        number = sum(at * grid.offset(1 << axis) for axis, at in enumerate(cell))
-        values = self.samples.read(np.array([number + grid.offset(corner) for corner in range(8)]))
-        return marching_cell.examine(values.astype(np.float64) - np.float32(self.params.level), self.params.method)
+        return (x, y, z) if self.box.holds_cell((x, y, z)) else None
 
     def set_up_card(self) -> None:
         """Lay out the microscope or the sheet, where one is wanted."""
-        p = self.params
+        p, chosen = self.params, self.chosen_cell()
         look = cell_cards.Look(self.view, self.aspect, p.color, p.method == "tetrahedra")
-        chosen = self.chosen_cell()
-        stage = (p.view, chosen, p.case, look.method, look.aspect, self.view.tobytes(), p.color, p.topology, self.made)
-        if stage == self.laid_out:
-            return
-        self.laid_out, self.card = stage, None
         if p.view == "cases":
-            self.card = cell_cards.sheet_card(look, self.case_counts(), p.case)
+            self.inspector.sheet(p.case, look, self.made)
         elif chosen:
-            cell = self.examined(chosen)
             name = "Cell {}, {}, {}".format(*chosen)
             if p.walk and len(self.surface.found.cells):
                 name += f"   ({self.walked_to() + 1} of {len(self.surface.found.cells)})"
-            self.card = cell_cards.microscope_card(cell, name, look, self.decided(cell))
-            low, high = self.in_world(np.array([chosen, np.array(chosen) + 1], np.float64))
-            self.card.model.box(low, high, max(0.0022, min(0.006, 0.07 * float(high[0] - low[0]))), rgb("#16181c"))
-        self.inset.card = self.card.rectangle if self.card else None
-        self.inset.show(self.card.model if self.card else Model())
-
-    def decided(self, cell: marching_cell.Cell) -> NDArray[np.float64] | None:
-        """The triangles of the trilinear surface in a cell; None where the table's are drawn."""
-        if self.params.topology != "trilinear" or self.params.method != "cubes" or not cell.has_values:
-            return None
-        vertices, triangles = trilinear_surface(cell.values.reshape(2, 2, 2).T, 0.0)
-        return vertices[triangles]
-
-    def case_counts(self) -> Mapping[int, int]:
-        """How many cells of the surface have each case."""
-        return dict(enumerate(np.bincount(self.surface.cases(), minlength=256).tolist()))
+            self.inspector.microscope(chosen, name, self.level, look, self.box, self.made,
+                                      trilinear=p.topology == "trilinear" and not look.tetrahedra)
+        else:
+            self.inspector.clear()
 
     def middle(self) -> tuple[float, float]:
         return cell_cards.room_for_card(self.aspect) if self.chosen_cell() else (0.0, 0.0)
 
     def labels(self) -> Sequence[Label]:
-        if self.card:
-            return [Label(line.text, line.place, line.size, line.color, line.align, line.plate, line.bold)
-                    for line in self.card.lines]
         if self.params.view != "compare":
-            return ()
+            return self.inspector.labels()
         meshes = {self.params.method: self.surface}
         return [self.caption(method, meshes.get(method, self.other).count // 3, x)
                 for method, x in (("cubes", -APART), ("tetrahedra", APART))]
@@ -364,18 +313,15 @@ class MarchingCubes(Scene):
                      plate="#f4f2edd8", bold=True)
 
     def click(self, click: Click) -> Mapping[str, object]:
-        if self.params.view == "cases" and self.card:
-            case = cell_cards.case_at(self.card, click.place, click.aspect)
-            return {"case": -1 if case is None or case == self.params.case else case}
-        if self.params.view != "surface" or self.params.walk or (self.card and self.card.covers(click.place)):
+        card, p = self.inspector.card, self.params
+        if p.view == "cases" and card:
+            case = cell_cards.case_at(card, click.place, click.aspect)
+            return {"case": -1 if case is None or case == p.case else case}
+        if p.view != "surface" or p.walk or (card and card.covers(click.place)):
             return {}
-        found = self.surface.cell_under(*self.ray_in_samples(click))
+        cut = None if p.slice == "none" else ("xyz".index(p.slice), p.slice_at)
+        found = self.inspector.cell_under(*self.box.ray(click.origin, click.direction), cut)
         return {"cell": "" if found is None else "{},{},{}".format(*found)}
-
-    def ray_in_samples(self, click: Click) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Where a click's ray starts, and how it goes on, in samples."""
-        step = np.array(self.samples.lattice.step)
-        return (click.origin / self.world_scale + self.reach) / step, click.direction / (self.world_scale * step)
 
     # What it tells
 
@@ -392,7 +338,7 @@ class MarchingCubes(Scene):
         return {
             **numbers, "active_cells": len(cells), "ambiguous_faces": self.surface.ambiguous_faces(),
             "jumps": self.surface.jumps, "evaluate_ms": self.samples.evaluate_ms,
-            "extract_ms": self.surface.extract_ms, **self.comparison(), **self.microscope_tables()}
+            "extract_ms": self.surface.extract_ms, **self.comparison(), **self.inspector.tables()}
 
     def comparison(self) -> Mapping[str, Table]:
         """Both methods beside each other."""
@@ -402,17 +348,6 @@ class MarchingCubes(Scene):
         return {"comparison": Table(("method", "triangles", "vertices", "ms"), [
             (name, mesh.count // 3, mesh.vertex_count, round(mesh.extract_ms, 2))
             for name, mesh in ((self.params.method, self.surface), (other, self.other))])}
-
-    def microscope_tables(self) -> Mapping[str, Table]:
-        """The cell under the microscope in numbers."""
-        chosen = self.chosen_cell()
-        if not chosen:
-            return {}
-        cell = self.examined(chosen)
-        tables = {"corners": Table(cell_words.CORNER_COLUMNS, cell_words.corner_rows(cell)),
-                  "crossings": Table(cell_words.CROSSING_COLUMNS, cell_words.crossing_rows(cell)),
-                  "ambiguous": Table(cell_words.FACE_COLUMNS, cell_words.face_rows(cell))}
-        return {f"cell_{name}": table for name, table in tables.items() if table.rows}
 
     def remarks(self) -> Sequence[str]:
         p, found = self.params, []

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from viewer.engine.annotations import Click, Label, Table
     from viewer.engine.camera import Orbit
+    from viewer.engine.cell_inspector import CellInspector
     from viewer.engine.declarations import (
         choice,
         color,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from viewer.engine.fields import ParameterError
     from viewer.engine.formula_shader import formula_include
     from viewer.engine.gpu import Gpu
-    from viewer.engine.insets import Insets
     from viewer.engine.isosurface import Isosurface, Wanted
     from viewer.engine.params import Parameters
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "CellInspector",
     "Click",
     "ColorScale",
     "Curve",
@@ -44,7 +45,6 @@ __all__ = [
     "FieldSamples",
     "Geometry",
     "Gpu",
-    "Insets",
     "Isosurface",
     "Label",
     "Lattice",
@@ -74,7 +74,7 @@ __all__ = [
 
 # Where they live, the first that has a name being its home.
 _HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
-          "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.isosurface", "engine.insets",
+          "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.isosurface", "engine.cell_inspector",
           "engine.scene", "engine.stage", "output.headless")
 
 

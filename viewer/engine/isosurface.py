@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, Warmth, drawing_into
 from viewer.engine.gpu import Gpu
-from viewer.engine.program import Program, VertexArray
+from viewer.engine.program import VertexArray
 from viewer.kit import bits
 from viewer.kit.marching import renumbered
 from viewer.kit.marching_grid import (
@@ -31,10 +31,11 @@ from viewer.kit.marching_grid import (
     in_order,
     topology,
 )
-from viewer.kit.ray import first_cell
+from viewer.kit.ray import first_cell, meetings, near_ray
 
 WIDTH = 1024            # vertices in a row of the textures
 VALUES_UNIT, LIST_UNIT = 0, 1
+CELL_DIAGONAL = 3.0 ** 0.5
 NO_CELLS = Topology(np.empty(0, np.uint32), np.empty((0, 3), np.int32), np.empty(0, np.intp),
                     np.empty(0, np.uint8), np.empty(0, np.int32))
 
@@ -66,17 +67,16 @@ class Isosurface:
         self.left_out: bits.Words | None = None
         self.extract_ms = 0.0
         self.indices = gpu.buffer(reserve=4 * 3 * 1024, label="triangles")
-        self._passes: dict[str, tuple[Program, VertexArray]] = {}
+        self._passes: dict[tuple[str, bool, bool], VertexArray] = {}
         self._warm = Warmth(gpu)
         self._given: moderngl.Texture | None = None
         self._made: list[Any] = []
         self._rows = 0
         self._make_room(1)
-        self._pass("crossing")
 
     def extract(self, wanted: Wanted) -> None:
         """Make the surface of the samples, as they now are."""
-        self._warm_up("crossing", wanted.method)
+        self._warm_up("crossing", wanted)
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         axes = self.samples.lattice.grid.axes
@@ -95,7 +95,7 @@ class Isosurface:
 
     def take(self, make: Callable[[], tuple[NDArray[np.float64], NDArray[np.int32]]], wanted: Wanted) -> None:
         """Take over a surface made elsewhere: vertices (n, 3) in samples, triangles (m, 3)."""
-        self._warm_up("place", "cubes")
+        self._warm_up("place", wanted)
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         vertices, triangles = make()
@@ -124,10 +124,20 @@ class Isosurface:
         """The case of each cell that the surface runs through."""
         return self.found.cases
 
-    def cell_under(self, origin: NDArray[np.float64], direction: NDArray[np.float64]) -> tuple[int, int, int] | None:
-        """The first cell with a part of the surface that a ray, given in samples, goes through."""
-        grid = self.samples.lattice.grid
-        return first_cell(grid.coordinates(self.found.cells).astype(np.float64), origin, direction)
+    def cell_under(self, origin: NDArray[np.float64], direction: NDArray[np.float64],
+                   part: tuple[float, float] = (0.0, np.inf)) -> tuple[int, int, int] | None:
+        """The cell of the triangle that a ray, given in samples, meets first.
+
+        ``part`` tells from where to where along the ray to look, in lengths of ``direction``.
+        """
+        vertices, triangles, _ = self.mesh()
+        lattice = self.samples.lattice
+        places = (vertices - np.array(lattice.corner)) / np.array(lattice.step)
+        near = near_ray(places, origin, direction, CELL_DIAGONAL)
+        corners = places[triangles[near[triangles[:, 0]]]]
+        met = meetings(corners, origin, direction)
+        cells = np.floor(corners[(met >= part[0]) & (met <= part[1])].mean(axis=1))
+        return first_cell(cells, origin, direction)
 
     def ambiguous_faces(self) -> int:
         """How many faces of the grid have two opposite corners inside and two outside."""
@@ -178,21 +188,20 @@ class Isosurface:
         padded = np.zeros((lines * WIDTH, components), dtype)
         padded[:len(rows)] = rows.reshape(-1, components)
         given.write(padded, (0, 0, WIDTH, lines))
-        program, everywhere = self._pass(name)
-        self.samples.describe_to(program)
-        program["u_surface_level"] = wanted.level
-        program["u_find_jumps"], program["u_bends"] = wanted.cut_jumps, wanted.curvature
+        everywhere = self._pass(name, wanted)
+        self.samples.describe_to(everywhere.program)
+        everywhere.program["u_surface_level"] = wanted.level
         self.samples.values.use(VALUES_UNIT)
         given.use(LIST_UNIT)
         with drawing_into(self.gpu, self._target, (WIDTH, lines)):
             everywhere.render(vertices=3)
 
-    def _warm_up(self, name: str, method: str) -> None:
+    def _warm_up(self, name: str, wanted: Wanted) -> None:
         """Have ready what is made once and then kept: the table, and the pass as the driver runs it."""
-        get_ready(self.samples.lattice.grid, method)
+        get_ready(self.samples.lattice.grid, wanted.method)
         self.samples.values.use(VALUES_UNIT)        # drivers compile for the kinds of textures in use
         self._given_to(name).use(LIST_UNIT)
-        self._warm.up(self._target, self._pass(name)[1])
+        self._warm.up(self._target, self._pass(name, wanted))
 
     def _given_to(self, name: str) -> moderngl.Texture:
         """The texture of what a pass makes vertices from: crossings, or places made elsewhere."""
@@ -203,14 +212,18 @@ class Isosurface:
             self._made.append(self._given)
         return self._given
 
-    def _pass(self, name: str) -> tuple[Program, VertexArray]:
-        if name not in self._passes:
-            program = self.gpu.program("studio/screen.vert", f"isosurface/{name}.frag",
-                                       generated={"generated/field.glsl": self._include})
+    def _pass(self, name: str, wanted: Wanted) -> VertexArray:
+        """A pass over all vertices, linked when first wanted: software GL would run what is only switched off."""
+        key = name, wanted.cut_jumps, wanted.curvature
+        if key not in self._passes:
+            asked = (f"const bool FIND_JUMPS = {str(wanted.cut_jumps).lower()};\n"
+                     f"const bool BENDS = {str(wanted.curvature).lower()};\n")
+            program = self.gpu.program("studio/screen.vert", f"isosurface/{name}.frag", generated={
+                "generated/field.glsl": self._include, "generated/asked.glsl": lambda: asked})
             program["u_values"] = program["u_volume"] = VALUES_UNIT
             program["u_crossings"] = program["u_places"] = LIST_UNIT
-            self._passes[name] = program, self.gpu.vertex_array(program)
-        return self._passes[name]
+            self._passes[key] = self.gpu.vertex_array(program)
+        return self._passes[key]
 
     def _send_triangles(self, triangles: NDArray[np.int32]) -> None:
         self.count = triangles.size

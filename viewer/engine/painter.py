@@ -41,12 +41,13 @@ class Painter:
 
     def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None],
               draw_over: Callable[[], None], middle: tuple[float, float] = (0.0, 0.0),
-              labels: Callable[[], tuple[Inscription, ...]] = tuple) -> None:
+              labels: Callable[[], tuple[Inscription, ...]] = tuple, *, turns: bool = False) -> None:
         """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour.
 
-        ``draw_over`` comes after the set; what ``labels`` gives after that is lettered over the finished picture.
+        ``draw_over`` comes after the set; what ``labels`` gives is lettered over the finished picture. ``turns``
+        tells that the shadow depends on the camera.
         """
-        self._cast_shadow(scene, camera, frame, draw)
+        self._cast_shadow(scene, frame, camera.look if turns else None, draw)
         self.set_moment(camera, frame, middle)
         self.picture.begin()
         plain_state(self.context)
@@ -121,8 +122,9 @@ class Painter:
         return (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
                 frame if moves else None)
 
-    def _cast_shadow(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None]) -> None:
-        shows = (self.scene_showing(scene, frame), camera.look if scene.turns_with_camera() else None)
+    def _cast_shadow(self, scene: Scene, frame: int, look: Hashable, draw: Callable[[], None]) -> None:
+        """Draw the shadow unless it shows the same already; ``look`` is the camera's, where that matters to it."""
+        shows = (self.scene_showing(scene, frame), look)
         if shows == self._shadow_shows:
             return
         self._shadow_shows = None

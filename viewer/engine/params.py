@@ -121,7 +121,7 @@ class Parameters:
     def offer(self, name: str, low: float, high: float) -> None:
         """Let the slider of a number on screen run from ``low`` to ``high``, here and now."""
         field = copy(self.field(name))
-        if isinstance(field, Number) and low < high:
+        if isinstance(field, Number) and max(low, field.minimum) < min(high, field.maximum):
             field.handy = max(low, field.minimum), min(high, field.maximum)
             self._offered[name] = field
 

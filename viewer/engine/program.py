@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -68,10 +69,11 @@ class Program:
         self._generated = {name: _careful(name, make) for name, make in generated.items()}
         self._own_uniforms: dict[str, Uniform] = {}
         self._variants: dict[object, Variant] = {}
-        self._sources = self._flatten()
         self._files: set[Path] = set()
         self._stamp: Stamp = ()
-        self._watch(self._sources)
+        texts = self._texts()
+        self._sources = self._flatten(texts)
+        self._watch(self._sources, texts)
         self.reads_time = _mention_time(self._sources.values())
         if fragment:
             self._variants["colour"] = self._link("colour", self._sources)
@@ -94,11 +96,12 @@ class Program:
         """Link anew if a file or generated text changed; returns the error that stands, if any."""
         stamp, self._stamp = self._stamp, ()    # a file that is missing may yet appear: look again next time
         try:
-            if self._now() == stamp:
+            texts = self._texts()
+            if self._now(texts) == stamp:
                 self._stamp = stamp
                 return self.error
-            sources = self._flatten()
-            self._watch(sources)
+            sources = self._flatten(texts)
+            self._watch(sources, texts)
             if not self._same_text(sources):
                 self._replace(sources)
             self.error = None
@@ -127,19 +130,24 @@ class Program:
         self.reads_time = _mention_time(sources.values())
         self.generation += 1
 
-    def _flatten(self) -> dict[str, Source]:
-        return {stage: self.gpu.shaders.flatten(name, self._generated) for stage, name in self._stages.items()}
+    def _texts(self) -> dict[str, str]:
+        """The generated texts as they now are, made once for all that needs them: a formula's takes a millisecond."""
+        return {name: make() for name, make in self._generated.items()}
+
+    def _flatten(self, texts: Mapping[str, str]) -> dict[str, Source]:
+        ready = {name: partial(str, text) for name, text in texts.items()}
+        return {stage: self.gpu.shaders.flatten(name, ready) for stage, name in self._stages.items()}
 
     def _same_text(self, sources: dict[str, Source]) -> bool:
         return all(sources[stage].lines == self._sources[stage].lines for stage in sources)
 
-    def _watch(self, sources: dict[str, Source]) -> None:
+    def _watch(self, sources: dict[str, Source], texts: Mapping[str, str]) -> None:
         self._files = {path for source in sources.values() for path in source.files}
-        self._stamp = self._now()
+        self._stamp = self._now(texts)
 
-    def _now(self) -> Stamp:
+    def _now(self, texts: Mapping[str, str]) -> Stamp:
         """What tells whether anything changed: each file's time and size, each generated text's hash."""
-        stamp = [(name, hash(make()), 0) for name, make in self._generated.items()]
+        stamp = [(name, hash(text), 0) for name, text in texts.items()]
         for path in sorted(self._files):
             try:
                 status = path.stat()

@@ -125,6 +125,17 @@ def checked_scale(scale: Any) -> ColorScale | None:
     return scale
 
 
+def checked_middle(middle: Any) -> tuple[float, float]:
+    """What a scene's ``middle`` gave; raises TypeError for anything but two finite numbers."""
+    try:
+        across, up = map(float, middle)
+    except (TypeError, ValueError):
+        across = up = math.nan
+    if not math.isfinite(across + up):
+        raise TypeError(f"middle gives {middle}, which is not a place in the picture")
+    return across, up
+
+
 def checked_measurements(measurements: Any) -> Measurements:
     """What a scene's ``measure`` gave; raises TypeError for what is neither a number nor a Curve."""
     named = dict(measurements or {})

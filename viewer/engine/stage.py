@@ -27,6 +27,7 @@ from viewer.engine.scene import (
     Scene,
     checked_geometry,
     checked_measurements,
+    checked_middle,
     checked_scale,
 )
 from viewer.engine.shaders import ShaderError
@@ -143,7 +144,8 @@ class Stage:
         self.painter.paint(self.scene, self.camera, self.clock.frame,
                            lambda: self._guard("failed in draw", self.scene.draw),
                            lambda: self._guard("failed in draw_over", self.scene.draw_over), self._middle(),
-                           lambda: self._guard("failed in labels", lambda: checked_labels(self.scene.labels())))
+                           lambda: self._guard("failed in labels", lambda: checked_labels(self.scene.labels())),
+                           turns=bool(self._guard("failed in turns_with_camera", self.scene.turns_with_camera)))
 
     def pixels(self) -> NDArray[np.uint8]:
         """The current frame drawn: uint8 (height, width, 4), top row first."""
@@ -292,7 +294,7 @@ class Stage:
         self._off_screen("failed in prepare", self.scene.prepare)
 
     def _middle(self) -> tuple[float, float]:
-        return self._guard("failed in middle", self.scene.middle)
+        return self._guard("failed in middle", lambda: checked_middle(self.scene.middle()))
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
         self._check_held()

@@ -31,6 +31,11 @@ class Look:
     tetrahedra: bool
 
     @property
+    def key(self) -> tuple[object, ...]:
+        """All of it, to be compared."""
+        return self.view.tobytes(), self.aspect, self.surface, self.tetrahedra
+
+    @property
     def method(self) -> str:
         """``cubes`` or ``tetrahedra``."""
         return "tetrahedra" if self.tetrahedra else "cubes"

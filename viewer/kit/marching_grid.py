@@ -22,7 +22,7 @@ Bytes: TypeAlias = NDArray[np.uint8]
 
 CELL = 7                    # all three axes: the direction from a cell's lowest corner to its highest
 MOST_SAMPLES = 1 << 29      # eight times a sample's number, and its direction, take 32 bits
-SLAB_SAMPLES = 1 << 18      # a slab's table of vertex numbers stays in the processor's cache
+SLAB_SAMPLES = 1 << 19      # a slab's table of vertex numbers stays in the processor's cache
 
 
 @dataclass(frozen=True)
