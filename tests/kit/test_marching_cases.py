@@ -110,7 +110,7 @@ def test_cubes_have_one_sheet_for_each_loop() -> None:
 
 
 def test_lines_on_a_face_follow_from_its_own_signs() -> None:
-    """The line on a face runs with the inside on its left; an inside corner opposite another is cut off alone."""
+    """Seen from outside, a line has the inside to its right; an inside corner opposite another is cut off alone."""
     for case in range(256):
         inside, lines = inside_corners(case), {(ends(a), ends(b)) for a, b in outline("cubes", case)}
         expected = set()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.kit import cell_words
-from viewer.kit.cell_model import INSIDE, OUTSIDE, case_triangles, microscope_model, sheet_frames, sheet_model
+from viewer.kit.cell_model import case_triangles, microscope_model, sheet_frames, sheet_model, side_color
 from viewer.kit.marching_cases import CORNERS
 from viewer.kit.marching_cell import Cell, Crossing, edge_name, examine
 from viewer.kit.models import Frame, Model, Rgb, in_picture
@@ -114,7 +114,7 @@ def _corner_labels(cell: Cell, frame: Frame, look: Look, letters: float) -> Iter
     for corner, place in enumerate(in_picture(outwards, frame, look.view, look.aspect)):
         value = cell.values[corner]
         written = cell_words.signed(value) if np.isfinite(value) else "no value"
-        color = INSIDE if value < 0.0 else OUTSIDE
+        color = side_color(value)
         at = float(place[0]), float(place[1])
         yield Line(f"{corner}:  {written}", at, 0.72 * letters, (0.5, 0.5), color, bold=True, plate=PAPER)
 
@@ -160,7 +160,7 @@ def _chosen_case(model: Model, look: Look, case: int, count: int) -> list[Line]:
     cell, frame = examine(values, look.method), (0.715, 0.22, min(0.5, 0.2 * look.aspect))
     large = microscope_model(cell, frame, look.surface, look.tetrahedra, case_triangles(look.method, case))
     model.extend(large)
-    colors = [INSIDE if value < 0.0 else OUTSIDE for value in values]
+    colors = [side_color(value) for value in values]
     numbers = [Line(str(corner), (float(x), float(y)), 0.72, (0.5, 0.5), colors[corner], True)
                for corner, (x, y) in enumerate(in_picture(0.5 + 1.22 * (CORNERS - 0.5), frame, look.view, look.aspect))]
     ambiguous = len(cell.ambiguous)

@@ -30,9 +30,9 @@ def microscope_model(cell: Cell, frame: Frame, surface: Rgb, tetrahedra: bool,
     model.box([0, 0, 0], [1, 1, 1], 0.012, rgb(EDGE), frame)
     if tetrahedra:
         _add_diagonals(model, frame)
-    for wanted, color, radius in ((np.isnan(cell.values), NO_VALUE, 0.05), (cell.values < 0.0, INSIDE, 0.062),
-                                  (cell.values >= 0.0, OUTSIDE, 0.05)):
-        model.balls(CORNERS[wanted], radius, rgb(color), frame)
+    colors = np.array([side_color(value) for value in cell.values])
+    for color, radius in ((NO_VALUE, 0.05), (INSIDE, 0.062), (OUTSIDE, 0.05)):
+        model.balls(CORNERS[colors == color], radius, rgb(color), frame)
     model.balls(cell.places, 0.032, rgb(CROSSING), frame)
     if triangles is None:
         triangles = cell.places[cell.triangles]
@@ -43,6 +43,13 @@ def microscope_model(cell: Cell, frame: Frame, surface: Rgb, tetrahedra: bool,
     for face in cell.ambiguous:
         _add_answers(model, cell, face.face, face.joins_inside, frame)
     return model
+
+
+def side_color(value: float) -> str:
+    """The colour of a corner with this value, less the level."""
+    if not np.isfinite(value):
+        return NO_VALUE
+    return INSIDE if value < 0.0 else OUTSIDE
 
 
 def _add_diagonals(model: Model, frame: Frame) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from viewer.kit.marching_cell import Cell, edge_name
 
 Row = tuple["float | str", ...]
@@ -21,7 +23,7 @@ def signed(value: float, digits: int = 3) -> str:
 def corner_rows(cell: Cell) -> list[Row]:
     """Each corner's number, with its bits x y z, its sign and its value less the level."""
     return [(f"{corner} ({''.join(str(corner >> axis & 1) for axis in range(3))})",
-             "inside" if value < 0.0 else "outside" if value >= 0.0 else "no value", float(value))
+             "no value" if not np.isfinite(value) else "inside" if value < 0.0 else "outside", float(value))
             for corner, value in enumerate(cell.values)]
 
 

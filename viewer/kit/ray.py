@@ -19,7 +19,7 @@ def first_cell(cells: Vector, origin: Vector, direction: Vector) -> tuple[int, i
         near, far = (cells - origin) / direction, (cells + 1.0 - origin) / direction
     enters = np.nanmax(np.minimum(near, far), axis=1)
     leaves = np.nanmin(np.maximum(near, far), axis=1)
-    enters[(enters > leaves) | (leaves < 0.0)] = np.inf
+    enters[(enters > leaves) | (leaves <= 0.0)] = np.inf
     nearest = int(np.argmin(enters))
     if not np.isfinite(enters[nearest]):
         return None
