@@ -126,3 +126,12 @@ def test_other_kinds_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(ExportError, match=r"ends in none of \.ply, \.obj, \.stl, \.npz"):
         export({"vertices": np.eye(3)}, tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("kind", ["ply", "obj", "stl"])
+def test_an_empty_mesh_is_told_and_writes_no_file(tmp_path: Path, kind: str) -> None:
+    """There are vertices and triangles by name, but none."""
+    empty = {"vertices": np.empty((0, 3), "f4"), "triangles": np.empty((0, 3), "i4")}
+    with pytest.raises(ExportError, match="has no triangles now"):
+        export(empty, tmp_path / f"empty.{kind}")
+    assert list(tmp_path.iterdir()) == []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from functools import lru_cache
 
 import numpy as np
@@ -112,17 +112,24 @@ def case_triangles(method: str, case: int) -> NDArray[np.float64]:
 def rotations() -> list[tuple[int, ...]]:
     """The 24 ways to turn a cell, each as the corners that corners 0 to 7 go to."""
     found = {tuple(range(8))}
-    turn_z: Callable[[int], int] = lambda c: (1 - (c >> 1 & 1)) | (c & 1) << 1 | c & 4      # noqa: E731
-    turn_x: Callable[[int], int] = lambda c: c & 1 | (1 - (c >> 2 & 1)) << 1 | (c >> 1 & 1) << 2  # noqa: E731
     waiting = [tuple(range(8))]
     while waiting:
         way = waiting.pop()
-        for turn in (turn_x, turn_z):
-            further = tuple(turn(corner) for corner in way)
+        for further in (tuple(map(_turned_about_x, way)), tuple(map(_turned_about_z, way))):
             if further not in found:
                 found.add(further)
                 waiting.append(further)
     return sorted(found)
+
+
+def _turned_about_x(corner: int) -> int:
+    x, y, z = corner & 1, corner >> 1 & 1, corner >> 2 & 1
+    return x | (1 - z) << 1 | y << 2
+
+
+def _turned_about_z(corner: int) -> int:
+    x, y, z = corner & 1, corner >> 1 & 1, corner >> 2 & 1
+    return (1 - y) | x << 1 | z << 2
 
 
 @lru_cache(maxsize=1)

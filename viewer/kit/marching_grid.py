@@ -83,7 +83,8 @@ def topology(inside: Bytes, axes: tuple[int, int, int] = (0, 1, 2), method: str 
     grid, table = Grid(inside.shape, axes), packed_table(method)
     signs = packed(inside)
     edges = [crossed_edges(signs, grid, direction) for direction in table.directions]
-    cells = places_of_ones(mixed_cells(signs, grid) & ~left_out if left_out is not None else mixed_cells(signs, grid))
+    mixed = mixed_cells(signs, grid)
+    cells = places_of_ones(mixed if left_out is None else mixed & ~left_out)
     cases = cell_cases(inside, grid, cells)
     numbers = np.empty(len(edges) * _largest_slab(grid), np.int32)
     slabs = [_Slab(grid, table, edges, cells, cases, *layers) for layers in _layers(grid)]
@@ -120,8 +121,10 @@ def cells_touching(samples: Words, grid: Grid) -> Words:
 
 
 def ambiguous_face_count(signs: Words, grid: Grid, left_out: Words | None = None) -> int:
-    """How many faces of cells have two opposite corners inside and two outside; ``left_out`` tells which samples
-    do not count, nor faces with them."""
+    """How many faces of cells have two opposite corners inside and two outside.
+
+    ``left_out`` has a bit set for each sample whose faces do not count.
+    """
     total = 0
     for first, second in ((1, 2), (2, 4), (4, 1)):
         across = moved_down(signs, grid.offset(first)), moved_down(signs, grid.offset(second))

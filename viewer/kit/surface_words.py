@@ -34,5 +34,5 @@ def about_gaps(jumps: int, without_value: int, samples: int) -> Iterator[str]:
         yield f"The function jumps over the level on {edges}; the cells there yield nothing."
     if without_value:
         share = 100.0 * without_value / samples
-        part = f"{share:.0f} %" if share >= 1.0 else "less than 1 %"
+        part = f"{int(share)} %" if share >= 1.0 else "less than 1 %"
         yield f"{part} of the samples have no value; the cells that touch them yield nothing."

@@ -43,7 +43,9 @@ def _write_mesh(geometry: Geometry, path: Path, kind: str) -> None:
     import trimesh
 
     vertices, triangles = geometry["vertices"], geometry["triangles"]
-    if vertices.shape[1:] != (3,) or triangles.shape[1:] != (3,) or not triangles.size:
+    if not triangles.size:
+        raise ExportError(f"{path}: this scene has no triangles now; there is nothing to export")
+    if vertices.shape[1:] != (3,) or triangles.shape[1:] != (3,):
         raise ExportError(f"{path}: this scene's vertices and triangles are not rows of three")
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise ExportError(f"{path}: this scene's triangles name vertices that it has not")
