@@ -3,13 +3,12 @@
 #include "lib/frame.glsl"
 #include "lib/grid.glsl"
 #include "generated/field.glsl"
+#include "generated/asked.glsl"       // FIND_JUMPS, and BENDS: whether the curvature is wanted
 #include "isosurface/shape.glsl"
 
 uniform sampler2D u_values;
 uniform usampler2D u_crossings;       // 8 times the number of the sample where the edge starts, plus its direction
 uniform float u_surface_level;
-uniform bool u_find_jumps;
-uniform bool u_bends;                 // whether the curvature is wanted
 
 layout(location = 0) out vec4 out_place;      // in the field's own space; 1 where the field jumps instead
 layout(location = 1) out vec4 out_normal;     // and the mean curvature
@@ -22,18 +21,22 @@ float value_at(ivec3 s) {
     return texelFetch(u_values, grid_texel(s), 0).r - u_surface_level;
 }
 
+// By its bits: compilers may take comparisons for granted that NaN fails.
+bool finite(float value) {
+    return (floatBitsToInt(value) & 0x7f800000) != 0x7f800000;
+}
+
 // Whether the values at the ends of an edge stay apart however much of it is cut off: a pole or a step.
-// Where the field is continuous they come together around the crossing.
+// Where the field is continuous they come together around the crossing, and mostly at t already.
 bool jumps(vec3 start, vec3 end, float A, float B, float t) {
-    float between = field(mix(start, end, t)) - u_surface_level;
-    if (abs(between) <= 0.25 * min(abs(A), abs(B)))
-        return false;
-    float low = 0.0, high = 1.0, at_low = A, at_high = B;
-    for (int halving = 0; halving < HALVINGS; halving++) {
-        float middle = 0.5 * (low + high);
-        float value = field(mix(start, end, middle)) - u_surface_level;
-        if ((value < 0.0) == (A < 0.0)) { low = middle; at_low = value; }
-        else { high = middle; at_high = value; }
+    float low = 0.0, high = 1.0, at_low = A, at_high = B, at = t;
+    for (int halving = 0; halving <= HALVINGS; halving++) {       // one loop, so that compilers meet the field once
+        float value = field(mix(start, end, at)) - u_surface_level;
+        if (halving == 0 && abs(value) <= 0.25 * min(abs(A), abs(B)))
+            return false;
+        if (halving > 0 && (value < 0.0) == (A < 0.0)) { low = at; at_low = value; }
+        else if (halving > 0) { high = at; at_high = value; }
+        at = 0.5 * (low + high);
     }
     return !(abs(at_high - at_low) <= 0.25 * abs(B - A));
 }
@@ -48,7 +51,8 @@ void main() {
     float t = clamp(A / (A - B), NEAREST, 1.0 - NEAREST);
     vec3 start = grid_place(vec3(s)), end = grid_place(vec3(s + direction));
     vec3 place = grid_place(vec3(s) + t * vec3(direction));
-    out_jump = float(u_find_jumps && jumps(start, end, A, B, t)) / 255.0;
+    bool has_values = finite(A) && finite(B);       // without one there is a gap already
+    out_jump = float(FIND_JUMPS && has_values && jumps(start, end, A, B, t)) / 255.0;
     out_place = vec4(place, 255.0 * out_jump);
-    out_normal = vec4(surface_normal(place), u_bends ? mean_curvature(place) : 0.0);
+    out_normal = vec4(surface_normal(place), BENDS ? mean_curvature(place) : 0.0);
 }

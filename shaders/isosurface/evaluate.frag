@@ -10,7 +10,7 @@ layout(location = 0) out float out_value;
 layout(location = 1) out float out_side;      // in 255ths: 1 inside, 0 outside, 2 no value
 
 void main() {
-    out_value = field(grid_place(vec3(grid_sample(ivec2(gl_FragCoord.xy)))));
+    out_value = field(grid_place(grid_sample(gl_FragCoord.xy)));
     bool has_value = abs(out_value) < 3.0e38;             // neither NaN nor infinite
     out_side = (has_value ? float(out_value < u_surface_level) : 2.0) / 255.0;
 }

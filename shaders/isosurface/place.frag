@@ -3,10 +3,10 @@
 #include "lib/frame.glsl"
 #include "lib/grid.glsl"
 #include "generated/field.glsl"
+#include "generated/asked.glsl"       // BENDS: whether the curvature is wanted
 #include "isosurface/shape.glsl"
 
 uniform sampler2D u_places;           // in samples
-uniform bool u_bends;                 // whether the curvature is wanted
 
 layout(location = 0) out vec4 out_place;
 layout(location = 1) out vec4 out_normal;
@@ -15,6 +15,6 @@ layout(location = 2) out float out_jump;
 void main() {
     vec3 place = grid_place(texelFetch(u_places, ivec2(gl_FragCoord.xy), 0).xyz);
     out_place = vec4(place, 0.0);
-    out_normal = vec4(surface_normal(place), u_bends ? mean_curvature(place) : 0.0);
+    out_normal = vec4(surface_normal(place), BENDS ? mean_curvature(place) : 0.0);
     out_jump = 0.0;
 }

@@ -1,5 +1,5 @@
 // A grid of samples in a flat texture: row after row of the grid, u_grid_rows of them to a row of texels.
-// ivec3 grid_sample(ivec2 texel): which sample a texel holds.   ivec2 grid_texel(ivec3 s): where it lies.
+// vec3 grid_sample(vec2 texel): which sample the texel around this middle holds.   ivec2 grid_texel(ivec3 s): where it lies.
 // vec3 grid_place(vec3 s): where samples, or places between them, sit in the function's own space.
 
 uniform ivec3 u_grid_samples;     // how many samples along x, y, z
@@ -7,12 +7,13 @@ uniform int u_grid_rows;          // rows of samples that lie side by side in on
 uniform vec3 u_grid_corner;       // where sample (0, 0, 0) sits
 uniform vec3 u_grid_step;         // from one sample to the next
 
-ivec3 grid_sample(ivec2 texel) {
-    // Quotients of whole numbers by way of floats: exact here, and faster than dividing integers.
-    int beside = int((float(texel.x) + 0.5) / float(u_grid_samples.x));
-    int row = texel.y * u_grid_rows + beside;
-    int z = int((float(row) + 0.5) / float(u_grid_samples.y));
-    return ivec3(texel.x - beside * u_grid_samples.x, row - z * u_grid_samples.y, z);
+vec3 grid_sample(vec2 texel) {
+    // Whole numbers as floats, and quotients that stay off whole numbers: exact here, and fast.
+    vec2 samples = vec2(u_grid_samples.xy);
+    float beside = floor(texel.x / samples.x);
+    float row = (texel.y - 0.5) * float(u_grid_rows) + beside;
+    float z = floor((row + 0.5) / samples.y);
+    return vec3(texel.x - 0.5 - beside * samples.x, row - z * samples.y, z);
 }
 
 ivec2 grid_texel(ivec3 s) {

@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Callable
 
-from tests.benchmarks import big_mesh, cold_start, formulas, panels
+from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels
 from tests.benchmarks.report import Row, Section, table
 
 SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
@@ -16,6 +16,7 @@ SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
     "big_mesh": big_mesh.sections,
     "panels": panels.sections,
     "formulas": formulas.sections,
+    "isosurfaces": isosurfaces.sections,
 }
 
 

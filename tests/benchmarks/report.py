@@ -56,6 +56,14 @@ def faster_than(row: Row, peer: Row, name: str, *, as_good: bool = False) -> str
     return f"{wish}: {_verdict(row.median <= peer.median, row.best <= peer.best)}"
 
 
+def in_time_of(row: Row, peer: Row, times: float, name: str) -> str:
+    """The target of taking at most ``times`` as long as ``peer``, and whether ``row`` meets it."""
+    wish = f"at most {times:g} of {name}"
+    if not peer.times:
+        return f"{wish}: it did not run"
+    return f"{wish}: {_verdict(row.median <= times * peer.median, row.best <= times * peer.best)}"
+
+
 def duration(seconds: float) -> str:
     """Seconds or milliseconds, whichever suits."""
     if seconds >= 1.0:

@@ -100,7 +100,9 @@ class CellInspector:
         place[axis] = origin[axis] + height
         if (place < 0.0).any() or (place > last).any():
             return height, to_slice, None
-        x, y, z = np.minimum(place.astype(int), last - 1).tolist()
+        cell = np.floor(place)
+        cell[axis] = np.ceil(place[axis]) - 1.0     # between two cells, the one that is not cut away
+        x, y, z = np.clip(cell, 0, last - 1).astype(int).tolist()
         return height, to_slice, (x, y, z)
 
     def draw(self, *, marks: bool) -> None:

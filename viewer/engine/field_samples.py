@@ -110,6 +110,12 @@ class FieldSamples:
         """How many samples are NaN or infinite."""
         return int((self.sides == NO_VALUE).sum()) if self.sides.max() >= NO_VALUE else 0
 
+    @property
+    def meets_border(self) -> bool:
+        """Whether any sample on the border of the grid is inside or has no value."""
+        faces = (np.take(self.sides, (0, -1), axis) for axis in range(3))
+        return any(bool(face.any()) for face in faces)
+
     def describe_to(self, program: Program) -> None:
         """Tell ``program`` where the samples are, in space and in the texture: see lib/grid.glsl."""
         program["u_grid_samples"] = self.lattice.samples

@@ -56,7 +56,8 @@ class Isosurface:
     at texel (gl_VertexID % 1024, gl_VertexID / 1024) of ``places`` and ``normals``.
 
     ``places`` are in the field's own space; the fourth component of ``normals`` is the mean curvature.
-    ``found`` is the topology, ``jumps`` the number of edges where the field jumps past the level.
+    ``found`` is the topology, ``jumps`` the number of edges where the field jumps past the level, ``closed``
+    whether nobody outside the grid can see the surface's inner side: it has no rim, and the grid's border is outside.
     """
 
     def __init__(self, gpu: Gpu, samples: FieldSamples, include: Callable[[], str]) -> None:
@@ -65,6 +66,7 @@ class Isosurface:
         self.found = NO_CELLS
         self.vertex_count = self.count = self.jumps = 0
         self.left_out: bits.Words | None = None
+        self.closed = False
         self.extract_ms = 0.0
         self.indices = gpu.buffer(reserve=4 * 3 * 1024, label="triangles")
         self._passes: dict[tuple[str, bool, bool], VertexArray] = {}
@@ -90,6 +92,7 @@ class Isosurface:
         if wanted.in_order:
             self.found = in_order(self.found)
         self._send_triangles(self.found.triangles)
+        self.closed = self.left_out is None and not self.samples.meets_border
         self.gpu.context.finish()
         self.extract_ms = 1e3 * (time.perf_counter() - started)
 
@@ -106,6 +109,7 @@ class Isosurface:
         rows[:, :3] = vertices
         self._run("place", rows, 4, "f4", wanted)
         self._send_triangles(triangles)
+        self.closed = self.left_out is None and not self.samples.meets_border
         self.gpu.context.finish()
         self.extract_ms = 1e3 * (time.perf_counter() - started)
 
