@@ -37,6 +37,7 @@ from viewer import (
     toggle,
 )
 from viewer.kit import cell_cards, cell_model, surface_words
+from viewer.kit.field_function import FieldFunction
 from viewer.kit.grid_box import GridBox
 from viewer.kit.mesh_measure import mesh_numbers
 from viewer.kit.trilinear import trilinear_surface
@@ -45,6 +46,7 @@ from viewer.kit.volume_file import SUFFIXES, read_volume
 TANGLE = "16*(x^4 + y^4 + z^4) - 20*(x^2 + y^2 + z^2) + 11.8"
 PLACES, NORMALS, VALUES = 0, 1, 2               # texture units
 APART = 0.92                                    # from the middle to either surface of a comparison
+FAR_OFF = 2.2                                   # from the middle: beside every grid, also when two are compared
 CLIP_DISTANCE = 0x3000                          # GL_CLIP_DISTANCE0
 VOLUME_FIELD = '#include "isosurface/volume_field.glsl"\n'
 FORMULA_FIELD = ("float field(vec3 place) { return formula(place); }\n"
@@ -124,6 +126,7 @@ class MarchingCubes(Scene):
                       for mesh in (self.surface, self.other)}
         self.slice_square = gpu.vertex_array(self.slice_plane, mode=moderngl.TRIANGLE_STRIP)
         self.inspector = CellInspector(gpu, self.surface)
+        self.function: FieldFunction | None = None
         self.made: Hashable = None
         self.set_up_volume()
 
@@ -174,7 +177,12 @@ class MarchingCubes(Scene):
         p, level = self.params, self.level
         if p.source == "formula":
             n, reach = p.resolution, p.extent
-            self.samples.evaluate(Lattice((n + 1,) * 3, (-reach,) * 3, (2.0 * reach / n,) * 3), level)
+            lattice = Lattice((n + 1,) * 3, (-reach,) * 3, (2.0 * reach / n,) * 3)
+            self.function = self.quick_function(lattice)
+            if self.function:
+                self.samples.compute(self.function, lattice, level)
+            else:
+                self.samples.evaluate(lattice, level)
         elif self.volume:
             nz, ny, nx = self.volume.values.shape
             lattice = Lattice((nx, ny, nz), (0.0, 0.0, 0.0), self.volume.spacing)
@@ -186,11 +194,18 @@ class MarchingCubes(Scene):
             self.extract(self.other, "tetrahedra" if p.method == "cubes" else "cubes")
         self.inspector.mark_gaps(self.box)
 
+    def quick_function(self, lattice: Lattice) -> FieldFunction | None:
+        """The formula for NumPy, where it is at its place sooner than a shader is compiled; None for the GPU's part."""
+        p = self.params
+        function = FieldFunction(p.formula, tuple(p.numbers(p.formula).items()))
+        stands = "t" not in p.formula.variables and p.colouring != "curvature"
+        return function if stands and function.is_quick(lattice.count) else None
+
     def extract(self, mesh: Isosurface, method: str) -> None:
         """Make one surface of the samples."""
         p = self.params
         wanted = Wanted(self.level, method, cut_jumps=p.source == "formula" and p.jumps == "cut",
-                        curvature=p.colouring == "curvature", in_order=p.walk)
+                        curvature=p.colouring == "curvature", in_order=p.walk, function=self.function)
         if method == "cubes" and p.topology == "trilinear":
             mesh.take(lambda: trilinear_surface(self.samples.read_all().T, wanted.level), wanted)
         else:
@@ -232,15 +247,21 @@ class MarchingCubes(Scene):
     def turns_with_camera(self) -> bool:
         return bool(self.params.view == "compare")
 
+    def only_outside_seen(self) -> bool:
+        """Whether a closed surface hides its inner side: the eye is beside the grid, and nothing is cut away."""
+        eye = -self.view[3, :3] @ self.view[:3, :3].T
+        return bool(np.linalg.norm(eye) > FAR_OFF and self.params.slice == "none" and not self.params.walk)
+
     def draw_surface(self, mesh: Isosurface, offset: float) -> None:
         """Draw one surface, aside by ``offset``; in a walk, as far as that has come."""
         count = mesh.count
-        if self.params.walk and mesh.found.cells.size:
+        if self.params.walk and self.params.view == "surface" and mesh.found.cells.size:
             count = 3 * int(np.searchsorted(mesh.found.owners, self.walked_to() + 1))
         if not count:
             return
         mesh.bind(PLACES, NORMALS)
         array = (self.wired if self.params.wireframe else self.smooth)[mesh]
+        array.closed = mesh.closed and self.only_outside_seen()
         array.program["u_world_offset"] = tuple(offset * self.view[:3, 0])       # aside, as the camera sees it
         array.program["u_method_drawn"] = int((self.params.method == "tetrahedra") == (mesh is self.surface))
         self.gpu.context.enable_direct(CLIP_DISTANCE)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.program import Program, VertexArray
+from viewer.kit.field_function import FieldFunction
 from viewer.kit.marching_grid import Grid
 
 Triple = tuple[float, float, float]
@@ -37,6 +38,10 @@ class Lattice:
         """How many points there are."""
         nx, ny, nz = self.samples
         return nx * ny * nz
+
+    def in_space(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Places given in samples (n, 3), in the field's own space, as lib/grid.glsl has it."""
+        return np.asarray(self.corner, np.float32) + places * np.asarray(self.step, np.float32)
 
     @property
     def grid(self) -> Grid:
@@ -68,26 +73,32 @@ class FieldSamples:
         self._filled: NDArray[np.float32] | None = None
         self._made: list[Any] = []
         self._texels: NDArray[np.uint8] = np.empty(0, np.uint8)
-        self._program: Program | None = None
-        if include:
-            self._program = gpu.program("studio/screen.vert", "isosurface/evaluate.frag",
-                                        generated={"generated/field.glsl": include})
-            self._everywhere = gpu.vertex_array(self._program)
-            self._warm = Warmth(gpu)
+        self._include = include
+        self._everywhere: VertexArray | None = None
+        self._warm = Warmth(gpu)
         self._make_room(self.lattice)
 
     def evaluate(self, lattice: Lattice, level: float) -> None:
         """Compute the field at every point of ``lattice``; raises GpuError where that is too much."""
-        assert self._program
         self._make_room(lattice)
-        self.describe_to(self._program)
-        self._program["u_surface_level"] = level
-        self._warm.up(self._target, self._everywhere)
+        everywhere = self._pass()
+        self.describe_to(everywhere.program)
+        everywhere.program["u_surface_level"] = level
+        self._warm.up(self._target, everywhere)
+        self._filled = None
         started = time.perf_counter()
         with drawing_into(self.gpu, self._target, self._target.size):
-            self._everywhere.render(vertices=3)
+            everywhere.render(vertices=3)
         self._target.read_into(self._texels, components=1, attachment=1, alignment=1)    # waits for the GPU
         self.sides = self._texels[:lattice.count].reshape(lattice.grid.shape)
+        self.evaluate_ms = 1e3 * (time.perf_counter() - started)
+
+    def compute(self, function: FieldFunction, lattice: Lattice, level: float) -> None:
+        """Compute ``function`` at every point of ``lattice`` in NumPy, and send the values to the GPU."""
+        started = time.perf_counter()
+        self._check(lattice)
+        self.fill(function.on_grid(lattice.samples, lattice.corner, lattice.step), lattice, level)
+        self.gpu.context.finish()
         self.evaluate_ms = 1e3 * (time.perf_counter() - started)
 
     def fill(self, values: NDArray[np.float32], lattice: Lattice, level: float) -> None:
@@ -123,6 +134,11 @@ class FieldSamples:
         program["u_grid_corner"] = self.lattice.corner
         program["u_grid_step"] = self.lattice.step
 
+    @property
+    def host_values(self) -> NDArray[np.float32]:
+        """The values that the field was filled with, (nz, ny, nx); read back where it was not."""
+        return self.read_all() if self._filled is None else self._filled
+
     def read(self, samples: NDArray[np.integer[Any]]) -> NDArray[np.float32]:
         """The values of some samples, given by number."""
         found = np.empty(len(samples), np.float32)
@@ -136,6 +152,15 @@ class FieldSamples:
         texels = np.frombuffer(self._target.read(components=1, dtype="f4"), np.float32)
         return texels[:self.lattice.count].reshape(self.lattice.grid.shape)
 
+    def _pass(self) -> VertexArray:
+        """The pass over all samples, linked when first wanted."""
+        if self._everywhere is None:
+            assert self._include
+            program = self.gpu.program("studio/screen.vert", "isosurface/evaluate.frag",
+                                       generated={"generated/field.glsl": self._include})
+            self._everywhere = self.gpu.vertex_array(program)
+        return self._everywhere
+
     def _make_room(self, lattice: Lattice) -> None:
         """Textures for ``lattice``: as many rows of samples beside each other as make them about square."""
         if self._rows and lattice.samples == self.lattice.samples:
@@ -144,7 +169,8 @@ class FieldSamples:
         columns, lines = lattice.samples[0], lattice.samples[1] * lattice.samples[2]
         rows = max(1, round((lines / columns) ** 0.5))
         size = (rows * columns, -(-lines // rows))
-        self._check(lattice, size)
+        self._check(lattice)
+        self.gpu.check_size(size, "a grid of {} x {} x {} samples, in a texture".format(*lattice.samples))
         self.gpu.discard(*self._made)
         self._made = []
         self.values = self.gpu.texture(size, 1, dtype="f4", label="field values")
@@ -154,12 +180,11 @@ class FieldSamples:
         self._texels = np.empty(size[0] * size[1], np.uint8)
         self._rows, self.lattice, self._filled = rows, lattice, None
 
-    def _check(self, lattice: Lattice, size: tuple[int, int]) -> None:
+    def _check(self, lattice: Lattice) -> None:
         nx, ny, nz = lattice.samples
         if lattice.count > FEW_SAMPLES and lattice.count > (most := room_for_samples()):
             raise GpuError(f"{nx} x {ny} x {nz} samples need {lattice.count * BYTES_PER_SAMPLE / 2**30:.2f} GiB; "
                            f"{most * BYTES_PER_SAMPLE / 2**30:.2f} GiB are to be had")
-        self.gpu.check_size(size, f"a grid of {nx} x {ny} x {nz} samples, in a texture")
 
 
 class Warmth:

@@ -20,7 +20,8 @@ from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, Warmth, 
 from viewer.engine.gpu import Gpu
 from viewer.engine.program import VertexArray
 from viewer.kit import bits
-from viewer.kit.marching import renumbered
+from viewer.kit.field_function import FieldFunction
+from viewer.kit.marching import crossed_edges, renumbered
 from viewer.kit.marching_grid import (
     Grid,
     Topology,
@@ -49,6 +50,7 @@ class Wanted:
     cut_jumps: bool = False
     curvature: bool = False
     in_order: bool = False      # the triangles cell after cell
+    function: FieldFunction | None = None       # the field in NumPy, where that is to be used
 
 
 class Isosurface:
@@ -78,7 +80,9 @@ class Isosurface:
 
     def extract(self, wanted: Wanted) -> None:
         """Make the surface of the samples, as they now are."""
-        self._warm_up("crossing", wanted)
+        if not wanted.function:
+            self._warm_up("crossing", wanted)
+        get_ready(self.samples.lattice.grid, wanted.method)
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         axes = self.samples.lattice.grid.axes
@@ -98,16 +102,22 @@ class Isosurface:
 
     def take(self, make: Callable[[], tuple[NDArray[np.float64], NDArray[np.int32]]], wanted: Wanted) -> None:
         """Take over a surface made elsewhere: vertices (n, 3) in samples, triangles (m, 3)."""
-        self._warm_up("place", wanted)
+        if not wanted.function:
+            self._warm_up("place", wanted)
+        get_ready(self.samples.lattice.grid, "cubes")
         started = time.perf_counter()
         inside, self.left_out = _inside_and_left_out(self.samples)
         vertices, triangles = make()
         self.found, self.jumps = topology(inside, self.samples.lattice.grid.axes, "cubes", self.left_out), 0
         if wanted.in_order:
             self.found, triangles = self._sorted_by_cell(vertices, triangles)
-        rows = np.ones((len(vertices), 4), np.float32)
-        rows[:, :3] = vertices
-        self._run("place", rows, 4, "f4", wanted)
+        if wanted.function:
+            places = self.samples.lattice.in_space(vertices.astype(np.float32))
+            self._send_vertices(places, wanted.function.normals(places))
+        else:
+            rows = np.ones((len(vertices), 4), np.float32)
+            rows[:, :3] = vertices
+            self._run("place", rows, 4, "f4", wanted)
         self._send_triangles(triangles)
         self.closed = self.left_out is None and not self.samples.meets_border
         self.gpu.context.finish()
@@ -173,6 +183,8 @@ class Isosurface:
 
     def _place_crossings(self, wanted: Wanted) -> NDArray[np.bool_]:
         """Find where each crossed edge is crossed; returns which of them the field jumps over."""
+        if wanted.function:
+            return self._place_in_numpy(wanted.function, wanted)
         self._run("crossing", self.found.crossings, 1, "u4", wanted)
         if not wanted.cut_jumps or not self.vertex_count:
             return np.zeros(self.vertex_count, np.bool_)
@@ -180,6 +192,28 @@ class Isosurface:
         flags = np.frombuffer(self._target.read((0, 0, *size), 1, attachment=2, alignment=1), np.uint8)
         jumping: NDArray[np.bool_] = flags[:self.vertex_count] != 0
         return jumping
+
+    def _place_in_numpy(self, function: FieldFunction, wanted: Wanted) -> NDArray[np.bool_]:
+        """The same as the pass ``crossing`` does."""
+        lattice = self.samples.lattice
+        starts, steps, A, B, t = (part.astype(np.float32) for part in crossed_edges(
+            self.found, self.samples.host_values, wanted.level, lattice.grid))
+        places = lattice.in_space(starts + t[:, None] * steps)
+        self._send_vertices(places, function.normals(places))
+        if not wanted.cut_jumps:
+            return np.zeros(len(places), np.bool_)
+        return function.jumps(lattice.in_space(starts), lattice.in_space(starts + steps), A, B, t, wanted.level)
+
+    def _send_vertices(self, places: NDArray[np.float32], normals: NDArray[np.float32]) -> None:
+        """Put vertices into the textures from which they are drawn."""
+        lines = -(-len(places) // WIDTH)
+        self._make_room(lines)
+        self.vertex_count = len(places)
+        for texture, rows in ((self.places, places), (self.normals, normals)):
+            padded = np.zeros((lines * WIDTH, 4), np.float32)
+            padded[:len(rows), :3] = rows
+            if lines:
+                texture.write(padded, (0, 0, WIDTH, lines))
 
     def _run(self, name: str, rows: NDArray[Any], components: int, dtype: str, wanted: Wanted) -> None:
         """Let the pass ``name`` make a vertex of each row."""
@@ -202,7 +236,6 @@ class Isosurface:
 
     def _warm_up(self, name: str, wanted: Wanted) -> None:
         """Have ready what is made once and then kept: the table, and the pass as the driver runs it."""
-        get_ready(self.samples.lattice.grid, wanted.method)
         self.samples.values.use(VALUES_UNIT)        # drivers compile for the kinds of textures in use
         self._given_to(name).use(LIST_UNIT)
         self._warm.up(self._target, self._pass(name, wanted))

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -117,6 +117,23 @@ def cells_without_value(samples: NDArray[Any], grid: Grid) -> bits.Words | None:
 
 def crossing_places(found: Topology, samples: NDArray[Any], level: float, grid: Grid) -> NDArray[np.float64]:
     """Where the surface crosses each edge, in units of cells, (v, 3)."""
+    edges = crossed_edges(found, samples, level, grid)
+    return np.asarray(edges.starts + edges.t[:, None] * edges.steps)
+
+
+class CrossedEdges(NamedTuple):
+    """Edges that a surface crosses, in units of cells: where they start (v, 3), the step to their end (v, 3),
+    the values ``A`` and ``B`` at their ends, less the level, and how far along ``t`` they are crossed, all (v,)."""
+
+    starts: NDArray[np.float64]
+    steps: NDArray[np.float64]
+    A: NDArray[np.float64]
+    B: NDArray[np.float64]
+    t: NDArray[np.float64]
+
+
+def crossed_edges(found: Topology, samples: NDArray[Any], level: float, grid: Grid) -> CrossedEdges:
+    """The edges that the surface crosses, with what is known of them."""
     starts = found.crossings >> np.uint32(3)
     directions = (found.crossings & np.uint32(7)).astype(np.intp)
     ends = starts + np.array([grid.offset(direction) for direction in range(8)], np.uint32)[directions]
@@ -124,8 +141,7 @@ def crossing_places(found: Topology, samples: NDArray[Any], level: float, grid: 
     with np.errstate(all="ignore"):
         A, B = (flat.take(ends_of).astype(np.float64) - level for ends_of in (starts, ends))
     steps = (np.arange(8)[:, None] >> np.arange(3) & 1).astype(np.float64)
-    places: NDArray[np.float64] = grid.coordinates(starts) + crossing_fraction(A, B)[:, None] * steps[directions]
-    return places
+    return CrossedEdges(grid.coordinates(starts).astype(np.float64), steps[directions], A, B, crossing_fraction(A, B))
 
 
 def crossing_fraction(A: NDArray[np.float64], B: NDArray[np.float64]) -> NDArray[np.float64]:

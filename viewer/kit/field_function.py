@@ -1,0 +1,90 @@
+"""A formula as a field in space, evaluated in NumPy: for few places that is sooner done than compiled for the GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.kit.formula import Formula
+
+Places = NDArray[np.float32]
+Values = NDArray[np.float32]
+
+QUICK_SAMPLES, QUICK_NODES = 75**3, 80      # up to which NumPy is quicker than a driver's compiler
+SLOW_OPERATIONS = frozenset({"noise", "turbulence"})
+HALVINGS = 20
+
+
+@dataclass(frozen=True)
+class FieldFunction:
+    """``formula`` in x, y and z with ``numbers`` (name, value) for its other names; float32 throughout."""
+
+    formula: Formula
+    numbers: tuple[tuple[str, float], ...] = ()
+
+    def is_quick(self, samples: int) -> bool:
+        """Whether that many samples are evaluated here sooner than a shader for them is compiled."""
+        operations = {node.operation for node in self.formula.nodes}
+        return samples <= QUICK_SAMPLES and len(self.formula.nodes) <= QUICK_NODES and not operations & SLOW_OPERATIONS
+
+    def on_grid(self, samples: Sequence[int], corner: Sequence[float], step: Sequence[float]) -> Values:
+        """The values at the points of a lattice, (nz, ny, nx)."""
+        along = [np.float32(first) + np.arange(count, dtype=np.float32) * np.float32(each)
+                 for count, first, each in zip(samples, corner, step, strict=True)]
+        return self._evaluated(self.formula, along[0], along[1][:, None], along[2][:, None, None])
+
+    def at(self, places: Places) -> Values:
+        """The values at ``places`` (n, 3)."""
+        return self._evaluated(self.formula, *np.ascontiguousarray(places.T))
+
+    def normals(self, places: Places) -> Places:
+        """The gradient at ``places`` (n, 3), of length one; zero where there is none."""
+        x, y, z = np.ascontiguousarray(places.T)
+        slope = np.stack([self._evaluated(part, x, y, z) for part in gradient(self.formula)], axis=1)
+        with np.errstate(all="ignore"):
+            size = np.sqrt((slope * slope).sum(axis=1, keepdims=True))
+            slope /= size
+        slope[~((size > 0.0) & (size < np.inf))[:, 0]] = 0.0
+        return slope
+
+    def jumps(self, starts: Places, ends: Places, A: Values, B: Values, t: Values, level: float) -> NDArray[np.bool_]:
+        """Which edges, from ``starts`` to ``ends`` (n, 3), the field jumps over the level: poles and steps.
+
+        ``A`` and ``B`` (n,) are the values at the ends, less the level, ``t`` (n,) where a straight line is zero.
+        The values at the ends stay apart however much of the edge is cut off; an end without a value is no jump.
+        As in isosurface/crossing.frag.
+        """
+        found = np.zeros(len(A), np.bool_)
+        with np.errstate(all="ignore"):
+            between = self.at(starts + t[:, None] * (ends - starts)) - np.float32(level)
+            doubtful = np.flatnonzero(~(np.abs(between) <= 0.25 * np.minimum(np.abs(A), np.abs(B)))
+                                      & np.isfinite(A) & np.isfinite(B))
+            if len(doubtful):
+                found[doubtful] = self._stay_apart(starts[doubtful], ends[doubtful], A[doubtful], B[doubtful], level)
+        return found
+
+    def _stay_apart(self, starts: Places, ends: Places, A: Values, B: Values, level: float) -> NDArray[np.bool_]:
+        low, high = np.zeros(len(A), np.float32), np.ones(len(A), np.float32)
+        at_low, at_high = A.copy(), B.copy()
+        for _ in range(HALVINGS):
+            middle = np.float32(0.5) * (low + high)
+            value = self.at(starts + middle[:, None] * (ends - starts)) - np.float32(level)
+            lower = (value < 0.0) == (A < 0.0)
+            low, high = np.where(lower, middle, low), np.where(lower, high, middle)
+            at_low, at_high = np.where(lower, value, at_low), np.where(lower, at_high, value)
+        return np.asarray(~(np.abs(at_high - at_low) <= 0.25 * np.abs(B - A)))
+
+    def _evaluated(self, formula: Formula, x: Values, y: Values, z: Values) -> Values:
+        found: Values = formula.evaluate(x=x, y=y, z=z, **dict(self.numbers)).astype(np.float32, copy=False)
+        return found
+
+
+@lru_cache(maxsize=8)
+def gradient(formula: Formula) -> tuple[Formula, Formula, Formula]:
+    """The derivatives by x, y and z."""
+    slopes = formula.gradient()
+    return slopes["x"], slopes["y"], slopes["z"]
