@@ -149,6 +149,11 @@ class MarchingCubes(Scene):
                 f"const bool ONE_CASE = {str(p.case >= 0).lower()};\n")
 
     @property
+    def has_field(self) -> bool:
+        """Whether there is anything to sample: a formula, or a volume that was chosen."""
+        return self.params.source == "formula" or self.volume is not None
+
+    @property
     def level(self) -> float:
         """The level as the GPU has it, in single precision."""
         return float(np.float32(self.params.level))
@@ -170,7 +175,8 @@ class MarchingCubes(Scene):
         moment = self.time if p.source == "formula" and "t" in p.formula.variables else 0.0
         numbers = tuple(p.numbers(p.formula).items())
         return (p.formula.text, numbers, moment, p.level, p.resolution, p.extent, p.method, p.topology, p.jumps,
-                p.view == "compare", p.colouring == "curvature", p.walk, self.gpu.generation)
+                p.view == "compare", p.colouring == "curvature", p.walk,
+                self.samples.generation, self.surface.generation, self.other.generation)
 
     def make(self) -> None:
         """Sample the field, and make the surface or, for a comparison, two."""
@@ -241,7 +247,7 @@ class MarchingCubes(Scene):
         self.samples.values.use(VALUES)
         for mesh, offset in pairs:
             self.draw_surface(mesh, offset)
-        if self.params.slice != "none":
+        if self.params.slice != "none" and self.has_field:
             self.slice_square.render(vertices=4)
 
     def turns_with_camera(self) -> bool:
@@ -291,7 +297,7 @@ class MarchingCubes(Scene):
 
     def chosen_cell(self) -> tuple[int, int, int] | None:
         """The cell under the microscope, by the sample at its lowest corner; None where there is none."""
-        if self.params.view != "surface":
+        if self.params.view != "surface" or not self.has_field:
             return None
         if self.params.walk and len(self.surface.found.cells):
             number = self.surface.found.cells[[self.walked_to()]]
@@ -372,7 +378,7 @@ class MarchingCubes(Scene):
 
     def remarks(self) -> Sequence[str]:
         p, found = self.params, []
-        if p.source == "volume" and not self.volume:
+        if not self.has_field:
             return ["Choose a volume: a file of samples, NumPy or NRRD."]
         if not self.surface.count:
             what = "The function" if p.source == "formula" else "The volume"

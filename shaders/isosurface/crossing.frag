@@ -2,6 +2,7 @@
 // One vertex of the surface: where it crosses an edge of the grid, and how it lies there.
 #include "lib/frame.glsl"
 #include "lib/grid.glsl"
+#include "lib/number.glsl"
 #include "generated/field.glsl"
 #include "generated/asked.glsl"       // FIND_JUMPS, and BENDS: whether the curvature is wanted
 #include "isosurface/shape.glsl"
@@ -10,20 +11,15 @@ uniform sampler2D u_values;
 uniform usampler2D u_crossings;       // 8 times the number of the sample where the edge starts, plus its direction
 uniform float u_surface_level;
 
-layout(location = 0) out vec4 out_place;      // in the field's own space; 1 where the field jumps instead
+layout(location = 0) out vec4 out_place;      // in the field's own space
 layout(location = 1) out vec4 out_normal;     // and the mean curvature
-layout(location = 2) out float out_jump;      // in 255ths
+layout(location = 2) out float out_jump;      // in 255ths: 1 where the field jumps instead of crossing
 
 const float NEAREST = 1e-4;           // as near to a sample as a vertex may come, in edges
 const int HALVINGS = 20;
 
 float value_at(ivec3 s) {
     return texelFetch(u_values, grid_texel(s), 0).r - u_surface_level;
-}
-
-// By its bits: compilers may take comparisons for granted that NaN fails.
-bool finite(float value) {
-    return (floatBitsToInt(value) & 0x7f800000) != 0x7f800000;
 }
 
 // Whether the values at the ends of an edge stay apart however much of it is cut off: a pole or a step.
@@ -51,8 +47,8 @@ void main() {
     float t = clamp(A / (A - B), NEAREST, 1.0 - NEAREST);
     vec3 start = grid_place(vec3(s)), end = grid_place(vec3(s + direction));
     vec3 place = grid_place(vec3(s) + t * vec3(direction));
-    bool has_values = finite(A) && finite(B);       // without one there is a gap already
+    bool has_values = is_finite(A) && is_finite(B);       // without one there is a gap already
     out_jump = float(FIND_JUMPS && has_values && jumps(start, end, A, B, t)) / 255.0;
-    out_place = vec4(place, 255.0 * out_jump);
+    out_place = vec4(place, 1.0);
     out_normal = vec4(surface_normal(place), BENDS ? mean_curvature(place) : 0.0);
 }

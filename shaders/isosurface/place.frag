@@ -14,7 +14,7 @@ layout(location = 2) out float out_jump;
 
 void main() {
     vec3 place = grid_place(texelFetch(u_places, ivec2(gl_FragCoord.xy), 0).xyz);
-    out_place = vec4(place, 0.0);
+    out_place = vec4(place, 1.0);
     out_normal = vec4(surface_normal(place), BENDS ? mean_curvature(place) : 0.0);
     out_jump = 0.0;
 }

@@ -73,7 +73,7 @@ def test_the_first_pack_wins_and_files_with_an_underscore_are_no_scenes(scene_pa
 
 
 @pytest.mark.parametrize(("name", "message"), [
-    ("rippling_spere", "unknown scene rippling_spere; did you mean rippling_sphere\\?; known: rippling_sphere"),
+    ("rippling_spere", "unknown scene rippling_spere; did you mean rippling_sphere\\?; known: .*rippling_sphere"),
     ("zzz", "unknown scene zzz; known: "), ("../evil", "unknown scene ../evil"), ("", "unknown scene ; known"),
     ("x" * 300, "unknown scene xxx"), ("a\0b", "unknown scene a"),
 ])

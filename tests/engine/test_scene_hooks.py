@@ -205,7 +205,7 @@ def test_prepare_may_draw_elsewhere(make_stage: MakeStage) -> None:
 
 # Mistakes
 
-ASKED = {"prepare": Stage.render, "draw_over": Stage.render, "middle": Stage.render, "labels": Stage.render,
+ASKED = {"draw_over": Stage.render, "middle": Stage.render, "labels": Stage.render,
          "turns_with_camera": Stage.render, "remarks": Stage.remarks, "click": lambda stage: stage.clicked(1, 1)}
 BAD = {"middle": "def middle(self):\n        CHECK\n        return 0.0, 0.0",
        "click": "def click(self, click):\n        CHECK\n        return {}",
@@ -232,6 +232,34 @@ def test_what_a_hook_raises_is_one_line_and_leaves_the_picture(make_stage: MakeS
     stage.set(shade=0.25)
     ASKED[where](stage)
     assert np.array_equal(stage.pixels(), picture)
+
+
+def test_a_change_that_cannot_be_prepared_is_undone(make_stage: MakeStage) -> None:
+    """It raises where it is made, in one line; value, picture and what can be changed after that stay."""
+    source = f"{packs.TILE}\n    def prepare(self):\n        assert self.params.shade < 0.8, 'too bright'\n"
+    stage = make_stage(source)
+    picture, before = stage.pixels(), stage.params.shade
+    with pytest.raises(SceneError, match=r"^tile failed in prepare: tile\.py:\d+: AssertionError: too bright$"):
+        stage.set(shade=0.9)
+    assert stage.params.shade == before
+    assert np.array_equal(stage.pixels(), picture)
+    stage.set(shade=0.7)
+    assert not np.array_equal(stage.pixels(), picture)
+
+
+def test_a_scene_that_cannot_prepare_can_still_be_changed(make_stage: MakeStage) -> None:
+    """Else nobody could set what would let it prepare again."""
+    source = f"{packs.TILE}\n    def prepare(self):\n        assert self.frame < 5 or self.params.shade < 0.3\n"
+    stage = make_stage(source)
+    stage.set(shade=0.6)
+    stage.seek(6)
+    with pytest.raises(SceneError):
+        stage.render()
+    stage.set(shade=0.5)
+    with pytest.raises(SceneError):
+        stage.render()
+    stage.set(shade=0.25)
+    stage.render()
 
 
 @pytest.mark.parametrize("where", ["prepare", "draw_over", "middle"])

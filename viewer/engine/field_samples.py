@@ -117,6 +117,11 @@ class FieldSamples:
         self.evaluate_ms = 1e3 * (time.perf_counter() - started)
 
     @property
+    def generation(self) -> int:
+        """Grows whenever the field's shader is replaced by an edited one."""
+        return self._everywhere.program.generation if self._everywhere else 0
+
+    @property
     def without_value(self) -> int:
         """How many samples are NaN or infinite."""
         return int((self.sides == NO_VALUE).sum()) if self.sides.max() >= NO_VALUE else 0

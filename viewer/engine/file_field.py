@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from viewer.engine.fields import Field
+from viewer.engine.fields import Field, ParameterError
 
 
 class File(Field[Path | None]):
@@ -36,6 +36,11 @@ class File(Field[Path | None]):
         if not found:
             raise self.refuse(value, "is not a file that exists")
         return path
+
+    def refuse(self, value: object, why: str) -> ParameterError:
+        """The error for a path; of a long one its end, where the file's name is."""
+        shown = str(value)
+        return super().refuse(shown if len(shown) <= 60 else f"...{shown[-57:]}", why)
 
     def text(self, value: Path | None) -> str:
         return "" if value is None else str(value)

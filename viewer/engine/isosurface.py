@@ -134,6 +134,11 @@ class Isosurface:
         kept = np.flatnonzero(used)
         return places[kept], renumbered(triangles, kept), normals[kept]
 
+    @property
+    def generation(self) -> int:
+        """Grows whenever a shader that the surface comes from is replaced by an edited one."""
+        return sum(each.program.generation for each in self._passes.values())
+
     def cases(self) -> NDArray[np.uint8]:
         """The case of each cell that the surface runs through."""
         return self.found.cases

@@ -49,6 +49,7 @@ class Stage:
         self.context = context
         self.entry = entry
         self._released = False
+        self._prepares_well, self._rendered_revision = True, -1
         self.clock = Clock()
         self.scene_class = entry.load()
         self.params: Parameters = self._guard("cannot take its parameters",
@@ -140,6 +141,8 @@ class Stage:
 
     def render(self) -> None:
         """Draw the current frame into the picture."""
+        if self.params.revision != self._rendered_revision:
+            self.scene.reads_time, self._rendered_revision = False, self.params.revision
         self._prepare()
         self.painter.paint(self.scene, self.camera, self.clock.frame,
                            lambda: self._guard("failed in draw", self.scene.draw),
@@ -214,7 +217,7 @@ class Stage:
 
     def _change(self, change: Callable[[], frozenset[str]]) -> frozenset[str]:
         """Make a change to the parameters felt, or, if the scene or a shader cannot follow, undo it."""
-        before = self.params.snapshot()
+        before, well = self.params.snapshot(), self._prepares_well
         changed = change()
         try:
             if any(self.params.field(name).rebuild for name in changed if name in self.params.fields):
@@ -224,8 +227,10 @@ class Stage:
                 error = self.scene.gpu.refresh()
                 if error and error.generated:
                     raise error
+                self._follow()
         except DemoscopeError:
             self.params.restore(before)
+            self._prepares_well = well
             self._share_parameters()
             self.scene.gpu.refresh()
             raise
@@ -264,6 +269,7 @@ class Stage:
         try:
             self._go_to(0)
             self._play_to(frame)
+            self._follow()
         except BaseException:
             self.scene.gpu.release()
             self.scene = former
@@ -291,7 +297,18 @@ class Stage:
 
     def _prepare(self) -> None:
         self.scene.look(self.camera.view(), self.size[0] / self.size[1])
+        self._prepares_well = False
         self._off_screen("failed in prepare", self.scene.prepare)
+        self._prepares_well = True
+
+    def _follow(self) -> None:
+        """Let the scene prepare for what has changed; a failure counts only if it did not fail before."""
+        well = self._prepares_well
+        try:
+            self._prepare()
+        except DemoscopeError:
+            if well:
+                raise
 
     def _middle(self) -> tuple[float, float]:
         return self._guard("failed in middle", lambda: checked_middle(self.scene.middle()))
