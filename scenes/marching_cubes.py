@@ -62,7 +62,7 @@ class MarchingCubes(Scene):
             "What the surface goes through", rebuild=True)
         formula = formula(TANGLE, "The function; inside is where it is below the level", when="source=formula")
         volume = file(None, "Samples on a grid: NumPy or NRRD", suffixes=SUFFIXES, when="source=volume")
-        level: float = slider(0.0, -1e6, 1e6, "The value that the surface has", handy=(-3.0, 3.0))
+        level: float = slider(0.0, -1e30, 1e30, "The value that the surface has", handy=(-3.0, 3.0))
         resolution: int = integer(64, 8, 256, "Cells along each axis", logarithmic=True, when="source=formula")
         extent: float = slider(1.5, 0.1, 100.0, "The function is sampled from minus this to plus this",
                                logarithmic=True, when="source=formula")
@@ -72,22 +72,23 @@ class MarchingCubes(Scene):
         topology: str = choice("table", {
             "table": "Inside corners across an ambiguous face are always parted",
             "trilinear": "As the trilinear function between the samples has it"},
-            "How ambiguous cells are decided", when="method=cubes")
+            "How ambiguous cells of cubes are decided")
         view: str = choice("surface", {
             "surface": "The surface", "compare": "Cubes and tetrahedra side by side",
             "cases": "All 256 cases on a sheet"}, "What is shown")
         colouring: str = choice("surface", {
             "surface": "A lit surface", "normal": "The normal's x, y, z as red, green, blue",
             "curvature": "How the surface bends: its mean curvature", "case": "Which of the 15 kinds each cell is",
-            "difference": "How far the other method's surface is away"}, "What the colours show", group="Look")
+            "difference": "How far the other method's surface is away"},
+            "What the colours show", group="Look", when="view!=cases")
         color: tuple[float, float, float] = color("#e07b39", "Colour of the outside", group="Look")
         curvature_scale: float = slider(3.0, 0.001, 1000.0, "The curvature at the ends of the colours", unit="1/length",
                                         logarithmic=True, group="Look", when="colouring=curvature")
         difference_scale: float = slider(0.03, 0.001, 1.0, "The distance at the bright end of the colours",
                                          unit="cells", logarithmic=True, group="Look", when="colouring=difference")
-        wireframe: bool = toggle(False, "The sides of the triangles", group="Look")
+        wireframe: bool = toggle(False, "The sides of the triangles", group="Look", when="view!=cases")
         slice: str = choice("none", {"none": "The whole surface", "x": "Cut at right angles to x", "y": "to y",
-                                     "z": "to z"}, "A plane that shows the samples", group="Look")
+                                     "z": "to z"}, "A plane that shows the samples", group="Look", when="view!=cases")
         slice_at: float = slider(0.0, -1.0, 1.0, "Where the plane cuts, in halves of the grid", group="Look",
                                  when="slice!=none")
         slice_range: float = slider(4.0, 1e-3, 1e5, "The distance from the level at the ends of the colours",
@@ -96,10 +97,10 @@ class MarchingCubes(Scene):
                                     "keep": "A wall there, as the samples alone suggest"},
                             "What to make of jumps", group="Look", when="source=formula")
         marks: bool = toggle(True, "Purple dots in cells that yield nothing, for want of a value or at a jump",
-                             group="Look")
+                             group="Look", when="view=surface, slice=none")
         cell: str = text("", "The cell under the microscope; a click chooses one",
                          pattern=r"\d{1,6}( *, *\d{1,6}){2}", example="3,0,7",
-                         group="Cell microscope", when="view=surface")
+                         group="Cell microscope", when="view=surface, !walk")
         walk: bool = toggle(False, "Visit the surface's cells one by one, as time goes on", group="Cell microscope",
                             when="view=surface")
         cells_per_second: float = slider(3.0, 0.1, 10000.0, "How fast the walk goes", logarithmic=True,
@@ -221,7 +222,13 @@ class MarchingCubes(Scene):
     def box(self) -> GridBox:
         """Where the grid stands in the world."""
         lattice = self.samples.lattice
-        return GridBox(lattice.samples, lattice.corner, lattice.step, 0.68 if self.params.view == "compare" else 1.0)
+        return GridBox(lattice.samples, lattice.corner, lattice.step,
+                       0.68 * self.squeeze if self.params.view == "compare" else 1.0)
+
+    @property
+    def squeeze(self) -> float:
+        """How much smaller two surfaces are beside each other where the picture is narrow."""
+        return min(1.0, max(1.0, self.aspect) / 1.22)
 
     def describe(self) -> None:
         """Tell the shaders where everything is."""
@@ -243,7 +250,8 @@ class MarchingCubes(Scene):
         pairs = [(self.surface, 0.0)]
         if self.params.view == "compare":
             first = self.params.method == "cubes"
-            pairs = [(self.surface, -APART if first else APART), (self.other, APART if first else -APART)]
+            apart = APART * self.squeeze if first else -APART * self.squeeze
+            pairs = [(self.surface, -apart), (self.other, apart)]
         self.samples.values.use(VALUES)
         for mesh, offset in pairs:
             self.draw_surface(mesh, offset)
@@ -275,7 +283,7 @@ class MarchingCubes(Scene):
         self.gpu.context.disable_direct(CLIP_DISTANCE)
 
     def draw_over(self) -> None:
-        self.inspector.draw(marks=self.params.marks and self.params.view == "surface")
+        self.inspector.draw(marks=self.params.marks and self.params.is_active("marks"))
 
     def color_scale(self) -> ColorScale | None:
         p = self.params
@@ -331,13 +339,13 @@ class MarchingCubes(Scene):
             return self.inspector.labels()
         meshes = {self.params.method: self.surface}
         return [self.caption(method, meshes.get(method, self.other).count // 3, x)
-                for method, x in (("cubes", -APART), ("tetrahedra", APART))]
+                for method, x in (("cubes", -APART * self.squeeze), ("tetrahedra", APART * self.squeeze))]
 
     def caption(self, method: str, triangles: int, aside: float) -> Label:
         """What stands under one of two surfaces."""
         x, y, z = (float(along) for along in aside * self.view[:3, 0] - (0.0, 1.0, 0.0))
-        return Label(f"{method}\n{triangles:,} triangles".replace(",", "\u2009"), (x, y, z), 1.1,
-                     plate="#f4f2edd8", bold=True)
+        words = f"{method}\n{triangles:,} triangles".replace(",", "\u2009")
+        return Label(words, (x, y, z), 1.1 * min(1.0, self.aspect), plate="#f4f2edd8", bold=True)
 
     def click(self, click: Click) -> Mapping[str, object]:
         card, p = self.inspector.card, self.params

@@ -72,10 +72,10 @@ class MarchingSquares(Scene):
             str(case): f"Only cells of case {case} = {case:04b}" for case in range(16)},
             "Which cells take part", group="Picture")
         cell: str = text("", "The cell to look at closely, as 3,4; or click on it",
-                         pattern=r"\d{1,6} *, *\d{1,6}", example="3,4", group="Cell microscope")
-        walk: bool = toggle(False, "Go from cell to cell as time goes on", group="Cell microscope")
+                         pattern=r"\d{1,6} *, *\d{1,6}", example="3,4", group="Cell microscope", when="view=board")
+        walk: bool = toggle(False, "Go from cell to cell as time goes on", group="Cell microscope", when="view=board")
         cells_per_second: float = slider(4.0, 0.5, 500.0, "How fast the walk goes", unit="cells/s", logarithmic=True,
-                                         group="Cell microscope", when="walk")
+                                         group="Cell microscope", when="walk, view=board")
 
     camera = Orbit(yaw=0, pitch=4, distance=6.7, target=(0.0, -0.04, 0.0), field_of_view=24)
     studio = Studio(radius=1.7, ground=-board.REACH)
@@ -263,7 +263,7 @@ class MarchingSquares(Scene):
     # What it tells
 
     def geometry(self) -> Geometry:
-        return {"segments": np.frombuffer(self.drawn.read()[:16 * self.count], np.float32).reshape(-1, 2, 2)}
+        return {"segments": self.square.tracing.segments.astype(np.float32)}
 
     def measure(self) -> Measurements:
         tables = {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -249,7 +251,7 @@ def test_the_sheet_has_every_case(aspect: float, chosen: int) -> None:
 
 def test_numbers_are_written_with_their_sign() -> None:
     """With a minus, not a hyphen."""
-    assert [cell_words.signed(value) for value in (0.25, -1.23456, 0.0, -1e-5)] == ["+0.25", "−1.23", "+0", "−1e−05"]
+    assert [cell_words.signed(value) for value in (0.25, -1.23456, 0.0, -1e-5)] == ["+0.25", "−1.23", "+0", "−1e−5"]
     assert cell_words.signed(1.23456, 2) == "+1.2"
 
 
@@ -263,11 +265,13 @@ def test_rows_tell_what_the_cell_is(method: str) -> None:
         rows = cell_words.crossing_rows(cell)
         assert all(t == pytest.approx(A / (A - B), abs=1e-4) for _, A, B, t in rows)
         assert len(rows) == len(cell.crossings) and len({row[0] for row in rows}) == len(rows)
-        for (name, saddle, what), face in zip(cell_words.face_rows(cell), cell.ambiguous, strict=True):
+        for (name, saddle, what, here), face in zip(cell_words.face_rows(cell), cell.ambiguous, strict=True):
             around = cell.values[list(FACES[face.face])]
             determinant = around[0] * around[2] - around[1] * around[3]
             assert name == face.name and np.sign(saddle) == np.sign(determinant) * np.sign(around[0])
-            assert what == ("joined" if saddle < 0.0 else "parted")
+            assert what == ("joined" if saddle < 0.0 else "parted") and here == "parted"
+        decided = replace(cell, decided=np.empty((0, 3, 3)))
+        assert all(row[2] == row[3] for row in cell_words.face_rows(decided))
 
 
 def test_headlines_count_triangles() -> None:
@@ -276,7 +280,7 @@ def test_headlines_count_triangles() -> None:
     assert cell_words.headline(single, "Cell") == "Cell\ncase 1 = 00000001 in binary: 1 triangle"
     assert cell_words.headline(examine(CHECKERBOARD), "A") == "A\ncase 9 = 00001001 in binary: 2 triangles"
     assert cell_words.headline(examine(np.full(8, np.nan)), "A").endswith("yields nothing")
-    assert list(cell_words.face_lines(examine(CHECKERBOARD))) == ["z = 0: saddle −0.33, joined"]
+    assert list(cell_words.face_lines(examine(CHECKERBOARD))) == ["z = 0: saddle −0.33, would join"]
 
 
 def test_emptiness_has_a_reason() -> None:

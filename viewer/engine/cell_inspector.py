@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from viewer.engine.annotations import Label, Table
 from viewer.engine.gpu import Gpu
 from viewer.engine.insets import Insets
 from viewer.engine.isosurface import Isosurface
-from viewer.kit import cell_cards, cell_words
+from viewer.kit import bits, cell_cards, cell_words
 from viewer.kit.cell_model import NO_VALUE
 from viewer.kit.grid_box import GridBox, Vector
 from viewer.kit.marching_cell import Cell, examine
@@ -37,12 +38,8 @@ class CellInspector:
         shown = ("microscope", *cell, name, look.key, trilinear, state)
         if shown == self._shown:
             return
-        self.cell = self.examined(cell, level, look.method)
-        triangles = None
-        if trilinear and self.cell.has_values:
-            vertices, corners = trilinear_surface(self.cell.values.reshape(2, 2, 2).T, 0.0)
-            triangles = vertices[corners]
-        card = cell_cards.microscope_card(self.cell, name, look, triangles)
+        self.cell = self.examined(cell, level, look.method, trilinear=trilinear)
+        card = cell_cards.microscope_card(self.cell, name, look)
         low, high = box.in_world(np.array([cell, np.add(cell, 1)]))
         card.model.box(low, high, max(0.0022, min(0.006, 0.07 * box.cell_size)), rgb(OUTLINE))
         self._lay(card, shown)
@@ -68,12 +65,19 @@ class CellInspector:
             model.balls(box.in_world(places), 0.18 * box.cell_size, rgb(NO_VALUE))
         self._marks.show(model)
 
-    def examined(self, cell: Sequence[int], level: float, method: str) -> Cell:
-        """A cell, its samples read back from the GPU."""
+    def examined(self, cell: Sequence[int], level: float, method: str, *, trilinear: bool) -> Cell:
+        """A cell, its samples read back from the GPU, and what the surface makes of it."""
         samples, grid = self.surface.samples, self.surface.samples.lattice.grid
         number = sum(at * grid.offset(1 << axis) for axis, at in enumerate(cell))
         values = samples.read(np.array([number + grid.offset(corner) for corner in range(8)]))
-        return examine(values.astype(np.float64) - level, method)
+        found = examine(values.astype(np.float64) - level, method)
+        if not found.has_values:
+            return found
+        torn = self.surface.left_out is not None and bits.at(self.surface.left_out, number)
+        if not trilinear:
+            return replace(found, torn=torn)
+        vertices, triangles = trilinear_surface(found.values.reshape(2, 2, 2).T, 0.0)
+        return replace(found, torn=torn, decided=vertices[triangles])
 
     def cell_under(self, origin: Vector, direction: Vector,
                    cut: tuple[int, float] | None) -> tuple[int, int, int] | None:

@@ -21,6 +21,7 @@ Sides = NDArray[np.uint8]
 
 OUTSIDE, INSIDE, NO_VALUE = 0, 1, 2
 MOST_SAMPLES = 2**27            # their numbers, and three bits more, have to fit in 32 bits
+BLOCK = 64                      # software GL compiles once more for what covers a whole block of this size
 FEW_SAMPLES = 2**22             # for which no machine need be asked whether it has the memory
 BYTES_PER_SAMPLE = 16           # value and side on the GPU, value, side and bits here, and room to work
 
@@ -193,17 +194,17 @@ class FieldSamples:
 
 
 class Warmth:
-    """Drivers finish compiling a program when it first draws; a texel drawn beforehand keeps that out of timings."""
+    """Drivers finish compiling a program when it first draws; a block drawn beforehand keeps that out of timings."""
 
     def __init__(self, gpu: Gpu) -> None:
         self.gpu = gpu
         self._known: dict[Program, int] = {}
 
     def up(self, target: moderngl.Framebuffer, pass_over: VertexArray) -> None:
-        """Draw a texel of ``target`` if the program has changed since it was last warm."""
+        """Draw a block of ``target`` if the program has changed since it was last warm."""
         program = pass_over.program
         if self._known.get(program) != program.generation:
-            with drawing_into(self.gpu, target, (1, 1)):
+            with drawing_into(self.gpu, target, (min(BLOCK, target.width), min(BLOCK, target.height))):
                 pass_over.render(vertices=3)
             self.gpu.context.finish()
             self._known[program] = program.generation

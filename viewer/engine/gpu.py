@@ -130,6 +130,11 @@ class Gpu:
         self.own(made, "")
         return made
 
+    @property
+    def largest_texture(self) -> int:
+        """How wide and how high a texture may be."""
+        return self._largest_texture
+
     def check_size(self, size: tuple[int, int], what: str) -> None:
         """Raise GpuError where ``size`` is empty or larger than the driver takes."""
         if not all(1 <= extent <= self._largest_texture for extent in size):

@@ -16,8 +16,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.engine.field_samples import INSIDE, NO_VALUE, FieldSamples, Warmth, drawing_into
-from viewer.engine.gpu import Gpu
+from viewer.engine.field_samples import BLOCK, INSIDE, NO_VALUE, FieldSamples, Warmth, drawing_into
+from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.program import VertexArray
 from viewer.kit import bits
 from viewer.kit.field_function import FieldFunction
@@ -27,14 +27,18 @@ from viewer.kit.marching_grid import (
     Topology,
     ambiguous_face_count,
     cells_touching,
+    crossing_count,
     get_ready,
     has_neighbour,
     in_order,
+    packed_table,
     topology,
 )
 from viewer.kit.ray import first_cell, meetings, near_ray
 
 WIDTH = 1024            # vertices in a row of the textures
+GROWTH = 1.25           # how much larger than needed textures are made, so that not each change needs new ones
+BYTES_PER_VERTEX = 80   # place, normal, edge and its share of the triangles, here and on the GPU
 VALUES_UNIT, LIST_UNIT = 0, 1
 CELL_DIAGONAL = 3.0 ** 0.5
 NO_CELLS = Topology(np.empty(0, np.uint32), np.empty((0, 3), np.int32), np.empty(0, np.intp),
@@ -84,15 +88,7 @@ class Isosurface:
             self._warm_up("crossing", wanted)
         get_ready(self.samples.lattice.grid, wanted.method)
         started = time.perf_counter()
-        inside, self.left_out = _inside_and_left_out(self.samples)
-        axes = self.samples.lattice.grid.axes
-        self.found = topology(inside, axes, wanted.method, self.left_out)
-        flags = self._place_crossings(wanted)
-        self.jumps = int(flags.sum())
-        if self.jumps:
-            torn = torn_cells(self.found.crossings[flags], self.samples.lattice.grid)
-            self.left_out = torn if self.left_out is None else self.left_out | torn
-            self.found = topology(inside, axes, wanted.method, self.left_out)
+        self._find_cells(wanted)
         if wanted.in_order:
             self.found = in_order(self.found)
         self._send_triangles(self.found.triangles)
@@ -106,10 +102,9 @@ class Isosurface:
             self._warm_up("place", wanted)
         get_ready(self.samples.lattice.grid, "cubes")
         started = time.perf_counter()
-        inside, self.left_out = _inside_and_left_out(self.samples)
+        self._find_cells(replace(wanted, method="cubes"))
         vertices, triangles = make()
-        self.found, self.jumps = topology(inside, self.samples.lattice.grid.axes, "cubes", self.left_out), 0
-        if wanted.in_order:
+        if wanted.in_order or self.jumps:
             self.found, triangles = self._sorted_by_cell(vertices, triangles)
         if wanted.function:
             places = self.samples.lattice.in_space(vertices.astype(np.float32))
@@ -176,14 +171,39 @@ class Isosurface:
         self.places.use(places)
         self.normals.use(normals)
 
+    def _find_cells(self, wanted: Wanted) -> None:
+        """Find the crossed edges and the cells around them, place the vertices, and leave out what jumps tear."""
+        inside, self.left_out = _inside_and_left_out(self.samples)
+        grid = self.samples.lattice.grid
+        self._check_crossings(inside, wanted.method)
+        self.found = topology(inside, grid.axes, wanted.method, self.left_out)
+        flags = self._place_crossings(wanted)
+        self.jumps = int(flags.sum())
+        if self.jumps:
+            torn = torn_cells(self.found.crossings[flags], grid)
+            self.left_out = torn if self.left_out is None else self.left_out | torn
+            self.found = topology(inside, grid.axes, wanted.method, self.left_out)
+
+    def _check_crossings(self, inside: NDArray[np.uint8], method: str) -> None:
+        """Raise GpuError, before any work is done, for more vertices than a texture holds."""
+        most = int(WIDTH * self.gpu.largest_texture / GROWTH) - WIDTH
+        if inside.size * len(packed_table(method).directions) <= most:
+            return
+        count = crossing_count(inside, self.samples.lattice.grid, method)
+        if count > most:
+            needed = count * BYTES_PER_VERTEX / 2**30
+            raise GpuError(f"the surface has {count:,} vertices, which need {needed:.1f} GiB; at most {most:,} fit; "
+                           "a lower resolution has fewer")
+
     def _sorted_by_cell(self, vertices: NDArray[np.float64],
                         triangles: NDArray[np.int32]) -> tuple[Topology, NDArray[np.int32]]:
-        """The topology with the owners of these triangles, and the triangles in that order."""
+        """The topology with the owners of these triangles, and the triangles in that order, without torn cells."""
         cells = np.floor(vertices[triangles].mean(axis=1)).astype(np.intp)
         grid = self.samples.lattice.grid
         numbers = cells @ np.array([grid.offset(1 << axis) for axis in range(3)])
         owners = np.searchsorted(self.found.cells, numbers).astype(np.int32)
-        order = np.argsort(owners, kind="stable")
+        kept = self.found.cells[np.minimum(owners, len(self.found.cells) - 1)] == numbers   # and not torn
+        order = np.flatnonzero(kept)[np.argsort(owners[kept], kind="stable")]
         return replace(self.found, triangles=triangles[order], owners=owners[order]), triangles[order]
 
     def _place_crossings(self, wanted: Wanted) -> NDArray[np.bool_]:
@@ -278,7 +298,7 @@ class Isosurface:
         """Textures of at least ``lines`` rows."""
         if lines <= self._rows:
             return
-        size = (WIDTH, int(1.25 * lines) + 1)
+        size = (WIDTH, max(BLOCK, int(GROWTH * lines) + 1))
         self.gpu.check_size(size, f"a surface of {lines * WIDTH} vertices, in a texture")
         self.gpu.discard(*self._made)
         self._rows = size[1]

@@ -179,6 +179,11 @@ class Stage:
         click = Click(place, origin, direction, width / height, height)
         return self._off_screen("failed in click", lambda: dict(self.scene.click(click)))
 
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Where in the picture, each -1 to 1, the camera's target stands."""
+        return self._middle()
+
     def color_scale(self) -> ColorScale | None:
         """What the picture's colours stand for, if they stand for a number."""
         return self._guard("failed in color_scale", lambda: checked_scale(self.scene.color_scale()))

@@ -41,3 +41,8 @@ def places_of_ones(words: Words) -> NDArray[np.intp]:
     within = np.flatnonzero(np.unpackbits(parts[some], bitorder="little").view(np.bool_))
     found: NDArray[np.intp] = (some[within >> 3] << 3) | (within & 7)
     return found
+
+
+def at(words: Words, place: int) -> bool:
+    """Whether one bit is set."""
+    return bool(int(words[place // WORD]) >> place % WORD & 1)

@@ -42,6 +42,17 @@ class Look:
 
 
 @dataclass(frozen=True)
+class Room:
+    """Where on a card there is room for text, in the picture's units; ``letters`` is their size."""
+
+    start: Place
+    width: float
+    height: float
+    letters: float
+    narrow: bool
+
+
+@dataclass(frozen=True)
 class CellCard:
     """Where a card lies, the model on it and its text; ``frames`` tells where on a sheet each case is."""
 
@@ -61,19 +72,20 @@ def room_for_card(aspect: float) -> Place:
     return (0.0, 0.45) if aspect < NARROW else (-0.46, 0.0)
 
 
-def microscope_card(cell: Cell, name: str, look: Look, triangles: NDArray[np.float64] | None = None) -> CellCard:
+def microscope_card(cell: Cell, name: str, look: Look) -> CellCard:
     """The cell with everything that is worked out about it."""
     narrow = look.aspect < NARROW
     rectangle = (-0.97, -0.97, 0.97, -0.06) if narrow else (0.11, -0.955, 0.982, 0.955)
     left, bottom, right, top = rectangle
-    frame = ((left + right) / 2.0, 0.24, min(0.60, 0.43 * look.aspect))
+    frame = ((left + right) / 2.0, 0.21, min(0.56, 0.43 * look.aspect))
     if narrow:
         frame = (-0.5, -0.60, min(0.38, 0.42 * look.aspect))
     letters = min(1.0, 0.72 * look.aspect if not narrow else 1.1 * look.aspect)
     head = list(_headline(cell, name, (left + 0.03, top - 0.065), letters))
     start = (0.02, -0.27) if narrow else (left + 0.03, -0.35)
-    text = list(_working(cell, start, (right - start[0]) / 2.0, start[1] - bottom - 0.03, letters))
-    model = microscope_model(cell, frame, look.surface, look.tetrahedra, triangles)
+    room = Room(start, right - start[0], start[1] - bottom - 0.03, letters, narrow)
+    text = [] if cell.torn else list(_working(cell, room))
+    model = microscope_model(cell, frame, look.surface, look.tetrahedra)
     return CellCard(rectangle, model, (*head, *_corner_labels(cell, frame, look, letters), *text))
 
 
@@ -119,19 +131,21 @@ def _corner_labels(cell: Cell, frame: Frame, look: Look, letters: float) -> Iter
         yield Line(f"{corner}:  {written}", at, 0.72 * letters, (0.5, 0.5), color, bold=True, plate=PAPER)
 
 
-def _working(cell: Cell, start: Place, column: float, height: float, letters: float) -> Iterator[Line]:
+def _working(cell: Cell, room: Room) -> Iterator[Line]:
     """Each crossing worked out, in two columns, and then what is ambiguous."""
     if not cell.crossings:
         return
+    start, column = room.start, room.width / 2.0
     columns = 1 if len(cell.crossings) + len(cell.ambiguous) <= ONE_COLUMN else 2
     rows, faces = -(-len(cell.crossings) // columns), list(cell_words.face_lines(cell))
-    beside = 1 if len(faces) <= 3 else 2
-    step = min(LINE_STEP * letters, height / (rows + -(-len(faces) // beside) + 1.5))
+    beside = 1 if len(faces) <= 3 or room.narrow else 2
+    step = min(LINE_STEP * room.letters, room.height / (rows + -(-len(faces) // beside) + 1.5))
     size = 0.92 * step / LINE_STEP
     tables = [cell.crossings[first:first + rows] for first in range(0, len(cell.crossings), rows)]
     for index, crossings in enumerate(tables):
         corner = (start[0] + index * column, start[1])
-        yield from _table(crossings, corner, 1.9 * column / columns, step, size, brief=columns > 1)
+        yield from _table(crossings, corner, 1.9 * column / columns, step, size, brief=columns > 1,
+                          digits=2 if room.narrow else 3)
     for index, line in enumerate(faces):
         down, across = divmod(index, beside)
         place = (start[0] + across * column, start[1] - (rows + 1.4 + down) * step)
@@ -139,12 +153,12 @@ def _working(cell: Cell, start: Place, column: float, height: float, letters: fl
 
 
 def _table(crossings: tuple[Crossing, ...], corner: Place, width: float, step: float, size: float, *,
-           brief: bool) -> Iterator[Line]:
+           brief: bool, digits: int) -> Iterator[Line]:
     """Edges and how far along each the surface crosses; not ``brief``, with the values that say so."""
     heads = ("edge", "t") if brief else ("edge", "A", "B", "t = A / (A \u2212 B)")
     places = (0.0, 0.4) if brief else (0.0, 0.2, 0.42, 0.64)
     rows: list[tuple[str, ...]] = [
-        (edge_name(each.edge), cell_words.signed(each.A), cell_words.signed(each.B), f"{each.t:.3f}")
+        (edge_name(each.edge), cell_words.signed(each.A, digits), cell_words.signed(each.B, digits), f"{each.t:.3f}")
         for each in crossings]
     if brief:
         rows = [(row[0], row[-1]) for row in rows]

@@ -35,9 +35,9 @@ def microscope_model(cell: Cell, frame: Frame, surface: Rgb, tetrahedra: bool,
         model.balls(CORNERS[colors == color], radius, rgb(color), frame)
     model.balls(cell.places, 0.032, rgb(CROSSING), frame)
     if triangles is None:
-        triangles = cell.places[cell.triangles]
-    for index in range(6 if tetrahedra else 1):
-        part = triangles[cell.tetrahedron == index] if tetrahedra else triangles
+        triangles = cell.yielded
+    for index in range(6 if tetrahedra and not cell.torn else 1):
+        part = triangles[cell.tetrahedron == index] if tetrahedra and not cell.torn else triangles
         model.faces(part, rgb(TETRAHEDRON_COLORS[index]) if tetrahedra else surface, frame)
     model.rods(triangles, np.roll(triangles, -1, axis=1), 0.007, (0.05, 0.06, 0.08), frame)
     for face in cell.ambiguous:

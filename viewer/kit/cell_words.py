@@ -11,12 +11,14 @@ from viewer.kit.marching_cell import Cell, edge_name
 Row = tuple["float | str", ...]
 CORNER_COLUMNS = ("corner", "sign", "value")
 CROSSING_COLUMNS = ("edge", "A", "B", "t")
-FACE_COLUMNS = ("face", "saddle", "inside")
+FACE_COLUMNS = ("face", "saddle", "trilinear", "here")
 
 
 def signed(value: float, digits: int = 3) -> str:
     """A number with its sign, as one writes it: ``+0.25``, ``\u22121.2``."""
-    text = f"{value:+.{digits}g}"
+    if 0.0 < abs(value) < 1e-3 or abs(value) >= 1e4:
+        digits = min(digits, 2)         # long enough as it is
+    text = f"{value:+.{digits}g}".replace("e-0", "e-").replace("e+0", "e")
     return text.replace("-", "\u2212")
 
 
@@ -33,19 +35,24 @@ def crossing_rows(cell: Cell) -> list[Row]:
 
 
 def face_rows(cell: Cell) -> list[Row]:
-    """Each ambiguous face, the bilinear value at its saddle, and what the trilinear surface makes of it."""
-    return [(face.name, face.saddle, "joined" if face.joins_inside else "parted") for face in cell.ambiguous]
+    """Each ambiguous face, the bilinear value at its saddle, what that makes of the inside, and what is made here."""
+    said = [(face, "joined" if face.joins_inside else "parted") for face in cell.ambiguous]
+    return [(face.name, face.saddle, word, word if cell.decided is not None else "parted") for face, word in said]
 
 
 def headline(cell: Cell, name: str) -> str:
     """The cell's name, its case in decimal and binary, and how many triangles it yields."""
     if not cell.has_values:
         return f"{name}\na corner without a value: the cell yields nothing"
-    count = len(cell.triangles)
+    if cell.torn:
+        return f"{name}\nthe function jumps here: the cell yields nothing"
+    count = len(cell.yielded)
     return f"{name}\ncase {cell.case} = {cell.binary} in binary: {count} triangle{'' if count == 1 else 's'}"
 
 
 def face_lines(cell: Cell) -> Iterator[str]:
-    """One line for each ambiguous face."""
+    """One line for each ambiguous face: what is made of it, or what would be if the saddle were asked."""
     for face in cell.ambiguous:
-        yield f"{face.name}: saddle {signed(face.saddle, 2)}, {'joined' if face.joins_inside else 'parted'}"
+        asked = cell.decided is not None or not face.joins_inside
+        word = "would join" if not asked else "joined" if face.joins_inside else "parted"
+        yield f"{face.name}: saddle {signed(face.saddle, 2)}, {word}"

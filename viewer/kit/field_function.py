@@ -15,7 +15,6 @@ Places = NDArray[np.float32]
 Values = NDArray[np.float32]
 
 QUICK_SAMPLES, QUICK_NODES = 75**3, 80      # up to which NumPy is quicker than a driver's compiler
-SLOW_OPERATIONS = frozenset({"noise", "turbulence"})
 HALVINGS = 20
 
 
@@ -28,8 +27,9 @@ class FieldFunction:
 
     def is_quick(self, samples: int) -> bool:
         """Whether that many samples are evaluated here sooner than a shader for them is compiled."""
-        operations = {node.operation for node in self.formula.nodes}
-        return samples <= QUICK_SAMPLES and len(self.formula.nodes) <= QUICK_NODES and not operations & SLOW_OPERATIONS
+        operations = [node.operation for node in self.formula.nodes]
+        slow = "turbulence" in operations or operations.count("noise") > 1
+        return samples <= QUICK_SAMPLES and len(operations) <= QUICK_NODES and not slow
 
     def on_grid(self, samples: Sequence[int], corner: Sequence[float], step: Sequence[float]) -> Values:
         """The values at the points of a lattice, (nz, ny, nx)."""

@@ -66,7 +66,8 @@ class Cell:
     """The eight ``values`` (8,) less the level, the ``case``, and what follows; places are in the unit cell.
 
     ``triangles`` (m, 3) are places in ``crossings``; ``tetrahedron`` (m,) tells which of the six a triangle
-    lies in, 0 throughout for cubes.
+    lies in, 0 throughout for cubes. ``torn`` tells that the function jumps inside the cell, which then
+    yields nothing; ``decided`` (m, 3, 3) are the triangles of the trilinear surface, where that is asked for.
     """
 
     values: NDArray[np.float64]
@@ -75,6 +76,15 @@ class Cell:
     triangles: NDArray[np.intp]
     tetrahedron: NDArray[np.intp]
     ambiguous: tuple[AmbiguousFace, ...]
+    torn: bool = False
+    decided: NDArray[np.float64] | None = None
+
+    @property
+    def yielded(self) -> NDArray[np.float64]:
+        """The triangles that the cell yields, by their corners' places, (m, 3, 3)."""
+        if self.torn:
+            return np.empty((0, 3, 3))
+        return self.places[self.triangles] if self.decided is None else self.decided
 
     @property
     def has_values(self) -> bool:

@@ -103,6 +103,14 @@ def crossed_edges(signs: Words, grid: Grid, direction: int) -> Index:
     return places_of_ones((signs ^ moved_down(signs, grid.offset(direction))) & has_neighbour(grid, direction))
 
 
+def crossing_count(inside: Bytes, grid: Grid, method: str) -> int:
+    """How many edges a surface crosses, and so how many vertices it has."""
+    signs = packed(inside)
+    found = [(signs ^ moved_down(signs, grid.offset(direction))) & has_neighbour(grid, direction)
+             for direction in packed_table(method).directions]
+    return sum(int(np.bitwise_count(crossed).sum()) for crossed in found)
+
+
 def mixed_cells(signs: Words, grid: Grid) -> Words:
     """Which cells have corners of both signs."""
     some = every = signs

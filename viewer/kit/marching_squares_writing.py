@@ -28,7 +28,8 @@ def on_board(formula: str, square: SampledSquare, with_error: bool, aspect: floa
         yield Line(equation, (0.0, -REACH - 0.1, IN_FRONT), 0.85, (0.5, 0.5), INK)
     if with_error:
         n, off = square.resolution, square.max_distance
-        yield Line(f"{n} × {n} cells, at most {off:.2g} off the true curve", (0.0, RIM, IN_FRONT), 0.85, (0.5, 0.5),
+        error = f"at most {off:.2g} off the true curve" if off == off else "no curve found"
+        yield Line(f"{n} × {n} cells, {error}", (0.0, RIM, IN_FRONT), 0.85, (0.5, 0.5),
                    INK, bold=True)
 
 

@@ -78,10 +78,10 @@ class SampledSquare:
 
     @cached_property
     def max_distance(self) -> float:
-        """How far, at most, the segments are from the true curve: 0 without any, NaN where there is none near."""
+        """How far, at most, the segments are from the true curve; NaN without any, and where there is none near."""
         ends = self.tracing.segments.astype(np.float64)
         if not len(ends):
-            return 0.0
+            return float("nan")
         points = (ends[:, None, 0] * (1.0 - PLACES[:, None]) + ends[:, None, 1] * PLACES[:, None]).reshape(-1, 2)
         found = distances(self.function, points, 2.0 / self.resolution, self.level)
         return float(np.nanmax(found)) if not np.isnan(found).all() else float("nan")

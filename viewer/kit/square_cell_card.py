@@ -76,7 +76,8 @@ def card(cell: SquareCell, title: str, saddle: str, no_curve: str, aspect: float
 
 def signed(number: float) -> str:
     """A number as on a blackboard: three digits, a true minus."""
-    return f"{number:.3g}".replace("-", "−").replace("e+0", "e").replace("e−0", "e−")
+    digits = 2 if 0.0 < abs(number) < 1e-3 or abs(number) >= 1e4 else 3     # long enough as it is
+    return f"{number:.{digits}g}".replace("-", "−").replace("e+0", "e").replace("e−0", "e−")
 
 
 class _Layout:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 def number(value: float) -> str:
     """A number in a sentence."""
-    return f"{value:.4g}".replace("-", "\u2212")
+    return f"{value + 0.0:.4g}".replace("-", "\u2212")
 
 
 def about_emptiness(values: NDArray[np.float32], level: float, what: str) -> str:

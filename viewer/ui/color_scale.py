@@ -14,13 +14,16 @@ STEPS = 32
 WIDTH_EMS, HEIGHT_EMS, MARGIN_EMS = 14.0, 0.8, 1.0
 
 
-def draw_color_scale(scale: ColorScale, box: Box) -> None:
-    """Draw ``scale`` over the picture in ``box``, behind all panels."""
+def draw_color_scale(scale: ColorScale, box: Box, *, above: bool = False) -> None:
+    """Draw ``scale`` over the picture in ``box``, behind all panels; ``above`` in its upper right corner."""
     em = imgui.get_font_size()
     width = min(WIDTH_EMS * em, box.width - 4.0 * MARGIN_EMS * em)
     if width < 4.0 * em or box.height < 8.0 * em:
         return
     left, bottom = box.x + 2.0 * MARGIN_EMS * em, box.y + box.height - MARGIN_EMS * em
+    if above:
+        left = box.x + box.width - width - 2.0 * MARGIN_EMS * em
+        bottom = box.y + (3.9 + MARGIN_EMS) * em
     behind = imgui.get_background_draw_list()
     plate = imgui.get_color_u32(imgui.ImVec4(*theme.PLATE))
     pad = 0.7 * em
