@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.field_samples import BLOCK, INSIDE, NO_VALUE, FieldSamples, Warmth, drawing_into
 from viewer.engine.gpu import Gpu, GpuError
-from viewer.engine.program import VertexArray
+from viewer.engine.program import Program, VertexArray
 from viewer.kit import bits
 from viewer.kit.field_function import FieldFunction
 from viewer.kit.marching import crossed_edges, renumbered
@@ -252,8 +252,7 @@ class Isosurface:
         padded[:len(rows)] = rows.reshape(-1, components)
         given.write(padded, (0, 0, WIDTH, lines))
         everywhere = self._pass(name, wanted)
-        self.samples.describe_to(everywhere.program)
-        everywhere.program["u_surface_level"] = wanted.level
+        self._tell(everywhere.program, wanted)
         self.samples.values.use(VALUES_UNIT)
         given.use(LIST_UNIT)
         with drawing_into(self.gpu, self._target, (WIDTH, lines)):
@@ -263,14 +262,22 @@ class Isosurface:
         """Have ready what is made once and then kept: the table, and the pass as the driver runs it."""
         self.samples.values.use(VALUES_UNIT)        # drivers compile for the kinds of textures in use
         self._given_to(name).use(LIST_UNIT)
-        self._warm.up(self._target, self._pass(name, wanted))
+        everywhere = self._pass(name, wanted)
+        self._tell(everywhere.program, wanted)
+        self._warm.up(self._target, everywhere)
+
+    def _tell(self, program: Program, wanted: Wanted) -> None:
+        """Give a pass what it needs to know of the samples and the surface."""
+        self.samples.describe_to(program)
+        program["u_surface_level"] = wanted.level
 
     def _given_to(self, name: str) -> moderngl.Texture:
         """The texture of what a pass makes vertices from: crossings, or places made elsewhere."""
         if name == "crossing":
             return self._edges
         if self._given is None:
-            self._given = self.gpu.texture((WIDTH, self._rows), 4, dtype="f4", label="given places")
+            nowhere = np.zeros((self._rows, WIDTH, 4), "f4")
+            self._given = self.gpu.texture((WIDTH, self._rows), 4, nowhere, dtype="f4", label="given places")
             self._made.append(self._given)
         return self._given
 
@@ -302,7 +309,8 @@ class Isosurface:
         self.gpu.check_size(size, f"a surface of {lines * WIDTH} vertices, in a texture")
         self.gpu.discard(*self._made)
         self._rows = size[1]
-        self._edges = self.gpu.texture(size, 1, dtype="u4", label="crossings")
+        # Zeros, so that a pass that is warmed up before there are crossings finds real samples.
+        self._edges = self.gpu.texture(size, 1, np.zeros(size[0] * size[1], "u4"), dtype="u4", label="crossings")
         self._given = None
         self.places = self.gpu.texture(size, 4, dtype="f4", label="places")
         self.normals = self.gpu.texture(size, 4, dtype="f4", label="normals")
