@@ -62,15 +62,14 @@ def new_formulas(rounds: int) -> Section:
     """From a formula that neither we nor the driver's cache on disk has seen to its picture, and where it goes."""
     whole = Row("Demoscope: a new formula, to its picture", ours=True)
     parts = [Row(f"  {name}") for name in (
-        "of this, GLSL written and linked", "compiled by the driver", "samples", "mesh", "picture")]
+        "of this, read and made ready", "samples", "mesh", "picture")]
     chance = random.Random(time.time_ns())
     with viewer.headless("marching_cubes", params={"resolution": 64, "extent": REACH}) as stage:
         for turn in range(rounds + 1):
             text = f"x^4 - 5*x^2 + y^4 - {chance.uniform(4.9, 5.1)!r}*y^2 + z^4 - 5*z^2 + 11.8"
-            linked = seconds(lambda text=text: stage.set(formula=text))
-            prepared, drawn = seconds(stage.remarks), seconds(lambda: drawn_out(stage))
+            changed, drawn = seconds(lambda text=text: stage.set(formula=text)), seconds(lambda: drawn_out(stage))
             samples, mesh = 1e-3 * stage.scene.samples.evaluate_ms, 1e-3 * stage.scene.surface.extract_ms
-            figures = linked + prepared + drawn, linked, prepared - samples - mesh, samples, mesh, drawn
+            figures = changed + drawn, changed - samples - mesh, samples, mesh, drawn
             for row, figure in zip((whole, *parts), figures, strict=True):
                 row.times = [*row.times, *([figure] if turn else [])]
     whole.target = at_most(whole, MOST_UNTIL_DRAWN)
