@@ -225,9 +225,11 @@ class Isosurface:
             self.found, self.samples.host_values, wanted.level, lattice.grid))
         places = lattice.in_space(starts + t[:, None] * steps)
         self._send_vertices(places, function.normals(places))
-        if not wanted.cut_jumps:
-            return np.zeros(len(places), np.bool_)
-        return function.jumps(lattice.in_space(starts), lattice.in_space(starts + steps), A, B, t, wanted.level)
+        jumping = np.zeros(len(places), np.bool_)
+        if wanted.cut_jumps and len(doubtful := function.doubtful(places, A, B, wanted.level)):
+            ends = lattice.in_space(starts[doubtful]), lattice.in_space((starts + steps)[doubtful])
+            jumping[doubtful] = function.jumps(ends[0], ends[1], A[doubtful], B[doubtful], wanted.level)
+        return jumping
 
     def _send_vertices(self, places: NDArray[np.float32], normals: NDArray[np.float32]) -> None:
         """Put vertices into the textures from which they are drawn."""

@@ -51,32 +51,31 @@ class FieldFunction:
         slope[~((size > 0.0) & (size < np.inf))[:, 0]] = 0.0
         return slope
 
-    def jumps(self, starts: Places, ends: Places, A: Values, B: Values, t: Values, level: float) -> NDArray[np.bool_]:
+    def doubtful(self, crossings: Places, A: Values, B: Values, level: float) -> NDArray[np.intp]:
+        """Which edges, crossed at ``crossings`` (n, 3), may have a jump there: not near the level as one would expect.
+
+        ``A`` and ``B`` (n,) are the values at their ends, less the level; an end without a value is no jump.
+        """
+        with np.errstate(all="ignore"):
+            near = np.abs(self.at(crossings) - np.float32(level)) <= 0.25 * np.minimum(np.abs(A), np.abs(B))
+        return np.flatnonzero(~near & np.isfinite(A) & np.isfinite(B))
+
+    def jumps(self, starts: Places, ends: Places, A: Values, B: Values, level: float) -> NDArray[np.bool_]:
         """Which edges, from ``starts`` to ``ends`` (n, 3), the field jumps over the level: poles and steps.
 
-        ``A`` and ``B`` (n,) are the values at the ends, less the level, ``t`` (n,) where a straight line is zero.
-        The values at the ends stay apart however much of the edge is cut off; an end without a value is no jump.
-        As in isosurface/crossing.frag.
+        The values at the ends stay apart however often the half without the change of sign is cut off. As in
+        isosurface/crossing.frag.
         """
-        found = np.zeros(len(A), np.bool_)
-        with np.errstate(all="ignore"):
-            between = self.at(starts + t[:, None] * (ends - starts)) - np.float32(level)
-            doubtful = np.flatnonzero(~(np.abs(between) <= 0.25 * np.minimum(np.abs(A), np.abs(B)))
-                                      & np.isfinite(A) & np.isfinite(B))
-            if len(doubtful):
-                found[doubtful] = self._stay_apart(starts[doubtful], ends[doubtful], A[doubtful], B[doubtful], level)
-        return found
-
-    def _stay_apart(self, starts: Places, ends: Places, A: Values, B: Values, level: float) -> NDArray[np.bool_]:
         low, high = np.zeros(len(A), np.float32), np.ones(len(A), np.float32)
-        at_low, at_high = A.copy(), B.copy()
-        for _ in range(HALVINGS):
-            middle = np.float32(0.5) * (low + high)
-            value = self.at(starts + middle[:, None] * (ends - starts)) - np.float32(level)
-            lower = (value < 0.0) == (A < 0.0)
-            low, high = np.where(lower, middle, low), np.where(lower, high, middle)
-            at_low, at_high = np.where(lower, value, at_low), np.where(lower, at_high, value)
-        return np.asarray(~(np.abs(at_high - at_low) <= 0.25 * np.abs(B - A)))
+        at_low, at_high, steps, below = A, B, ends - starts, A < 0.0
+        with np.errstate(all="ignore"):
+            for _ in range(HALVINGS):
+                middle = np.float32(0.5) * (low + high)
+                value = self.at(starts + middle[:, None] * steps) - np.float32(level)
+                lower = (value < 0.0) == below
+                low, high = np.where(lower, middle, low), np.where(lower, high, middle)
+                at_low, at_high = np.where(lower, value, at_low), np.where(lower, at_high, value)
+            return np.asarray(~(np.abs(at_high - at_low) <= 0.25 * np.abs(B - A)))
 
     def _evaluated(self, formula: Formula, x: Values, y: Values, z: Values) -> Values:
         found: Values = formula.evaluate(x=x, y=y, z=z, **dict(self.numbers)).astype(np.float32, copy=False)
