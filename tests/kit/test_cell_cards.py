@@ -233,17 +233,19 @@ def test_the_sheet_has_every_case(aspect: float, chosen: int) -> None:
     card = sheet_card(look(aspect), counts, chosen)
     written = words(card)
     assert {str(case) for case in range(256)} <= set(written)
-    assert written[0] == "Cubes: 256 cases, 2 of them in this surface"
     assert card.frames is not None
     for case, (x, y, _) in card.frames.items():
         assert card.covers((x, y)) and case_at(card, (x, y), aspect) == case
     assert case_at(card, (0.0, 0.999), aspect) is None
-    if chosen >= 0 and aspect > 1.2:
+    narrow = chosen >= 0 and aspect <= 1.2
+    assert written[0] == (f"Case {chosen} = {chosen:08b}: {counts.get(chosen, 0)} cells of this surface" if narrow
+                          else "Cubes: 256 cases, 2 of them in this surface")
+    if chosen >= 0 and not narrow:
         assert f"Case {chosen}" in written
         assert f"triangles: {len(case_table('cubes').cases[chosen])}" in written
         assert f"cells of this surface: {counts.get(chosen, 0)}" in written
     else:
-        assert not any(text.startswith("Case") for text in written)
+        assert not any(text.startswith("Case") for text in written[1:])
     assert case_at(microscope_card(examine(CHECKERBOARD), "Cell", look(aspect)), (0.5, 0.5), aspect) is None
 
 

@@ -12,7 +12,7 @@ from viewer.kit import cell_words
 from viewer.kit.cell_model import case_triangles, microscope_model, sheet_frames, sheet_model, side_color
 from viewer.kit.marching_cases import CORNERS
 from viewer.kit.marching_cell import Cell, Crossing, edge_name, examine
-from viewer.kit.models import Frame, Model, Rgb, in_picture
+from viewer.kit.models import Frame, Model, Rgb, in_picture, rgb
 from viewer.kit.square_cell_card import INK, QUIET, WARNING, Line, Place, Rectangle
 
 NARROW = 1.15                   # pictures whose width is less than this times their height have the card below
@@ -94,9 +94,14 @@ def sheet_card(look: Look, counts: Mapping[int, int], chosen: int) -> CellCard:
     aside = chosen >= 0 and look.aspect >= NARROW
     rectangle = (-0.985, -0.97, 0.985, 0.97)
     frames = sheet_frames(look.aspect, -0.965, 0.44 if aside else 0.965, -0.95, 0.83)
-    model = sheet_model(frames, look.method, {case for case, count in counts.items() if count}, look.surface)
-    lines = [Line(f"{look.method.capitalize()}: 256 cases, {sum(1 for count in counts.values() if count)} of them "
-                  "in this surface", (-0.955, 0.905), 0.95, bold=True)]
+    present = {case for case, count in counts.items() if count}
+    model = sheet_model(frames, look.method, present, look.surface)
+    if chosen >= 0:
+        model.box([-0.1] * 3, [1.1] * 3, 0.05, rgb(INK), frames[chosen])
+    title = f"{look.method.capitalize()}: 256 cases, {len(present)} of them in this surface"
+    if chosen >= 0 and not aside:       # no room but in the title
+        title = f"Case {chosen} = {chosen:08b}: {counts.get(chosen, 0)} cells of this surface"
+    lines = [Line(title, (-0.955, 0.905), 0.95 * min(1.0, 1.1 * look.aspect), bold=True)]
     lines += [Line(str(case), (frame[0] - 0.62 * frame[2] / look.aspect, frame[1] + 0.92 * frame[2]), 0.5, (0.0, 0.5),
                    INK if counts.get(case) else QUIET) for case, frame in frames.items()]
     if aside:
