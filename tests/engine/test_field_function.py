@@ -19,6 +19,8 @@ FIELDS = {
     "floor(3*x) + 0.5 + 0*y": 676,
     "sin(5*x)*sin(5*y)*sin(5*z) + 0.1*sin(3*x + y)": 0,
     "a*x + b*y + 0.1": 0,
+    "x/0 + y": 0,                                   # infinite or nothing, and so no surface
+    "mod(x, 0)": 0,
 }
 
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from viewer.kit.formula_functions import CONDITIONS, small_integer
-from viewer.kit.formula_glsl_functions import HELPERS, power_helper
+from viewer.kit.formula_glsl_functions import BY_ZERO, HELPERS, power_helper
 from viewer.kit.formula_graph import NOISES, Graph, Node, needed
 from viewer.kit.formula_text import (
     AND,
@@ -141,6 +141,9 @@ class GlslWriter:
         if node.operation in CONDITIONS:
             return self._comparison(node)
         operands = [self._number(argument) for argument in node.arguments]
+        if node.operation in BY_ZERO and self.graph.value(node.arguments[1]) == 0.0:
+            name = self._helper(f"{node.operation}_by_zero", BY_ZERO[node.operation])
+            return Written(f"{name}({operands[0].text})", WHOLE)
         if (common := arithmetic(node, operands, space=" ")) is not None:
             return common
         if node.operation == "power":

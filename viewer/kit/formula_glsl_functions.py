@@ -42,6 +42,21 @@ float NAME(float low, float high, float value) {
 """,
 }
 
+# What divides by the number 0 has values too, or none, as in NumPy; compilers take such a quotient as they please.
+BY_ZERO = {
+    "divide": """\
+float NAME(float value) {
+    if (value == 0.0 || value != value) return uintBitsToFloat(0x7fc00000u);
+    return uintBitsToFloat(value > 0.0 ? 0x7f800000u : 0xff800000u);
+}
+""",
+    "mod": """\
+float NAME(float value) {
+    return uintBitsToFloat(0x7fc00000u);
+}
+""",
+}
+
 
 def power_helper(exponent: int) -> str:
     """A function that multiplies its argument out, squaring it as often as ``exponent`` has bits."""
