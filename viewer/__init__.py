@@ -27,10 +27,11 @@ if TYPE_CHECKING:
     from viewer.engine.fields import ParameterError
     from viewer.engine.formula_shader import formula_include
     from viewer.engine.gpu import Gpu
-    from viewer.engine.isosurface import Isosurface, Wanted
+    from viewer.engine.isosurface import Isosurface
     from viewer.engine.params import Parameters
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.stage import Stage
+    from viewer.engine.vertex_textures import Wanted
     from viewer.errors import DemoscopeError
     from viewer.output.headless import headless, render
 
@@ -74,7 +75,8 @@ __all__ = [
 
 # Where they live, the first that has a name being its home.
 _HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
-          "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.isosurface", "engine.cell_inspector",
+          "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.vertex_textures",
+          "engine.isosurface", "engine.cell_inspector",
           "engine.scene", "engine.stage", "output.headless")
 
 

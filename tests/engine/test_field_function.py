@@ -70,3 +70,14 @@ def test_values_on_a_grid_stand_where_the_gpu_has_them() -> None:
     values = function.on_grid((3, 4, 5), (1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
     assert values.shape == (5, 4, 3) and values.dtype == np.float32
     assert values[4, 3, 2] == pytest.approx(1.2 + 26.0 + 420.0 + 0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("most", [field_function.QUICK_SAMPLES, 0])
+def test_a_trilinear_surface_of_nothing_but_jumps_is_empty(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """As the table's is: no cell is left."""
+    monkeypatch.setattr(field_function, "QUICK_SAMPLES", most)
+    params = {"formula": "1/(x - 0.01)", "resolution": 16, "topology": "trilinear", "walk": True}
+    with viewer.headless("marching_cubes", size=(32, 32), params=params) as stage:
+        stage.render()
+        numbers = stage.measure()
+        assert (numbers["triangles"], numbers["vertices"], numbers["jumps"]) == (0, 0, 289)

@@ -65,7 +65,8 @@ class Bench:
 
     def bend(self) -> NDArray[np.float32]:
         """The fourth component of the normals: the mean curvature."""
-        return np.frombuffer(self.surface.normals.read(), np.float32).reshape(-1, 4)[:self.surface.vertex_count, 3]
+        texels = np.frombuffer(self.surface.vertices.normals.read(), np.float32)
+        return texels.reshape(-1, 4)[:self.surface.vertex_count, 3]
 
     def evaluated(self, places: Numbers, derivative: str | None = None) -> Numbers:
         """The formula or one of its slopes at ``places`` (n, 3), in double precision, by NumPy."""
