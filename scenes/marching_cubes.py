@@ -198,8 +198,20 @@ class MarchingCubes(Scene):
             return
         self.extract(self.surface, p.method)
         if p.view == "compare":
-            self.extract(self.other, "tetrahedra" if p.method == "cubes" else "cubes")
+            self.extract(self.other, self.other_method)
         self.inspector.mark_gaps(self.box)
+
+    @property
+    def other_method(self) -> str:
+        """The method that is not chosen."""
+        return "tetrahedra" if self.params.method == "cubes" else "cubes"
+
+    def shown(self) -> list[tuple[str, Isosurface, float]]:
+        """The surfaces that are drawn: their method, mesh, and how far aside they stand."""
+        if self.params.view != "compare":
+            return [(self.params.method, self.surface, 0.0)]
+        meshes, apart = {self.params.method: self.surface, self.other_method: self.other}, APART * self.squeeze
+        return [("cubes", meshes["cubes"], -apart), ("tetrahedra", meshes["tetrahedra"], apart)]
 
     def quick_function(self, lattice: Lattice) -> FieldFunction | None:
         """The formula for NumPy, where it is at its place sooner than a shader is compiled; None for the GPU's part."""
@@ -214,7 +226,7 @@ class MarchingCubes(Scene):
         wanted = Wanted(self.level, method, cut_jumps=p.source == "formula" and p.jumps == "cut",
                         curvature=p.colouring == "curvature", in_order=p.walk, function=self.function)
         if method == "cubes" and p.topology == "trilinear":
-            mesh.take(lambda: trilinear_surface(self.samples.read_all().T, wanted.level), wanted)
+            mesh.take(lambda: trilinear_surface(self.samples.host_values.T, wanted.level), wanted)
         else:
             mesh.extract(wanted)
 
@@ -247,14 +259,9 @@ class MarchingCubes(Scene):
     def draw(self) -> None:
         if self.params.view == "cases":
             return
-        pairs = [(self.surface, 0.0)]
-        if self.params.view == "compare":
-            first = self.params.method == "cubes"
-            apart = APART * self.squeeze if first else -APART * self.squeeze
-            pairs = [(self.surface, -apart), (self.other, apart)]
         self.samples.values.use(VALUES)
-        for mesh, offset in pairs:
-            self.draw_surface(mesh, offset)
+        for method, mesh, aside in self.shown():
+            self.draw_surface(method, mesh, aside)
         if self.params.slice != "none" and self.has_field:
             self.slice_square.render(vertices=4)
 
@@ -266,8 +273,8 @@ class MarchingCubes(Scene):
         eye = -self.view[3, :3] @ self.view[:3, :3].T
         return bool(np.linalg.norm(eye) > FAR_OFF and self.params.slice == "none" and not self.params.walk)
 
-    def draw_surface(self, mesh: Isosurface, offset: float) -> None:
-        """Draw one surface, aside by ``offset``; in a walk, as far as that has come."""
+    def draw_surface(self, method: str, mesh: Isosurface, aside: float) -> None:
+        """Draw one surface; in a walk, as far as that has come."""
         count = mesh.count
         if self.params.walk and self.params.view == "surface" and mesh.found.cells.size:
             count = 3 * int(np.searchsorted(mesh.found.owners, self.walked_to() + 1))
@@ -276,8 +283,8 @@ class MarchingCubes(Scene):
         mesh.bind(PLACES, NORMALS)
         array = (self.wired if self.params.wireframe else self.smooth)[mesh]
         array.closed = mesh.closed and self.only_outside_seen()
-        array.program["u_world_offset"] = tuple(offset * self.view[:3, 0])       # aside, as the camera sees it
-        array.program["u_method_drawn"] = int((self.params.method == "tetrahedra") == (mesh is self.surface))
+        array.program["u_world_offset"] = tuple(aside * self.view[:3, 0])        # as the camera sees it
+        array.program["u_method_drawn"] = int(method == "tetrahedra")
         self.gpu.context.enable_direct(CLIP_DISTANCE)
         array.render(vertices=count)
         self.gpu.context.disable_direct(CLIP_DISTANCE)
@@ -337,9 +344,7 @@ class MarchingCubes(Scene):
     def labels(self) -> Sequence[Label]:
         if self.params.view != "compare":
             return self.inspector.labels()
-        meshes = {self.params.method: self.surface}
-        return [self.caption(method, meshes.get(method, self.other).count // 3, x)
-                for method, x in (("cubes", -APART * self.squeeze), ("tetrahedra", APART * self.squeeze))]
+        return [self.caption(method, mesh.count // 3, aside) for method, mesh, aside in self.shown()]
 
     def caption(self, method: str, triangles: int, aside: float) -> Label:
         """What stands under one of two surfaces."""
@@ -369,9 +374,8 @@ class MarchingCubes(Scene):
         numbers = mesh_numbers(vertices, triangles)._asdict()
         if self.params.source == "volume":
             numbers["volume"] = abs(numbers["volume"])      # in a volume, what is solid is often what is above
-        cells = self.surface.cases()
         return {
-            **numbers, "active_cells": len(cells), "ambiguous_faces": self.surface.ambiguous_faces(),
+            **numbers, "active_cells": len(self.surface.cases()), "ambiguous_faces": self.surface.ambiguous_faces(),
             "jumps": self.surface.jumps, "evaluate_ms": self.samples.evaluate_ms,
             "extract_ms": self.surface.extract_ms, **self.comparison(), **self.inspector.tables()}
 
@@ -379,10 +383,9 @@ class MarchingCubes(Scene):
         """Both methods beside each other."""
         if self.params.view != "compare":
             return {}
-        other = "tetrahedra" if self.params.method == "cubes" else "cubes"
         return {"comparison": Table(("method", "triangles", "vertices", "ms"), [
-            (name, mesh.count // 3, mesh.vertex_count, round(mesh.extract_ms, 2))
-            for name, mesh in ((self.params.method, self.surface), (other, self.other))])}
+            (method, mesh.count // 3, mesh.vertex_count, round(mesh.extract_ms, 2))
+            for method, mesh, _ in self.shown()])}
 
     def remarks(self) -> Sequence[str]:
         p, found = self.params, []
@@ -390,7 +393,7 @@ class MarchingCubes(Scene):
             return ["Choose a volume: a file of samples, NumPy or NRRD."]
         if not self.surface.count:
             what = "The function" if p.source == "formula" else "The volume"
-            found.append(surface_words.about_emptiness(self.samples.read_all(), p.level, what))
+            found.append(surface_words.about_emptiness(self.samples.host_values, p.level, what))
         found += surface_words.about_gaps(self.surface.jumps, self.samples.without_value, self.samples.lattice.count)
         if p.cell.strip() and p.view == "surface" and not p.walk and not self.chosen_cell():
             last = ",".join(str(count - 2) for count in self.samples.lattice.samples)

@@ -9,7 +9,8 @@ from scipy.ndimage import label
 from scipy.optimize import fsolve
 
 from tests.kit.surface_checks import METHODS, soup
-from viewer.kit.marching import NEAREST, marching_cubes
+from viewer.kit.interpolation import NEAREST
+from viewer.kit.marching import marching_cubes
 from viewer.kit.marching_cases import CORNERS, FACES, TETRAHEDRA
 from viewer.kit.marching_cell import AmbiguousFace, edge_name, examine, face_saddle
 

@@ -28,7 +28,8 @@ from tests.kit.surface_checks import (
     winding_numbers,
 )
 from viewer.kit import marching_grid
-from viewer.kit.marching import NEAREST, marching_cubes
+from viewer.kit.interpolation import NEAREST
+from viewer.kit.marching import marching_cubes
 from viewer.kit.marching_grid import MOST_SAMPLES
 
 pytestmark = [pytest.mark.filterwarnings("error"), pytest.mark.parametrize("method", METHODS)]

@@ -223,7 +223,7 @@ def test_both_methods_side_by_side(stage: Stage) -> None:
         assert (row["triangles"], row["vertices"]) == tuple(numbers(stage)[name] for name in ("triangles", "vertices"))
     stage.set(view="compare")                               # with tetrahedra chosen now
     assert np.array_equal(stage.pixels(), shown)
-    assert [row["method"] for row in numbers(stage)["comparison"].records()] == ["tetrahedra", "cubes"]
+    assert [row["method"] for row in numbers(stage)["comparison"].records()] == ["cubes", "tetrahedra"]
     stage.set(walk=True)                                    # which is for one surface alone
     assert np.array_equal(stage.pixels(), shown)
     stage.set(walk=False, resolution=8)

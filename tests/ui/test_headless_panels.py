@@ -53,3 +53,23 @@ def test_a_scale_that_cannot_be_drawn_is_told_and_the_picture_stays(context: mod
         bench.release()
         for buffer in (*target.color_attachments, target.depth_attachment, target):
             buffer.release()
+
+
+def test_a_middle_that_fails_beside_a_scale_is_told_and_the_window_goes_on(context: moderngl.Context,
+                                                                           scene_pack: ScenePack) -> None:
+    """The scale asks where it may stand; what the scene raises then must not break the frame."""
+    source = packs.TILE.replace("import Parameters", "import ColorScale, Parameters")
+    source += ("\n    def color_scale(self):\n        return ColorScale('height', 0.0, 1.0)\n"
+               "\n    def middle(self):\n        return 1 / 0\n")
+    bench = Workbench(context, Catalog([scene_pack(tile=source)]), steady=True)
+    target = context.simple_framebuffer((320, 200))
+    try:
+        assert bench.open("tile")
+        for _ in range(2):
+            bench.draw(0.02, Surface(target, (320, 200)))
+        assert bench.live and bench.live.problem
+        assert bench.live.problem.text.startswith("tile failed in middle")
+    finally:
+        bench.release()
+        for buffer in (*target.color_attachments, target.depth_attachment, target):
+            buffer.release()

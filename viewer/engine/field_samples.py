@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -210,18 +211,15 @@ class Warmth:
             self._known[program] = program.generation
 
 
-class drawing_into:     # noqa: N801, used as a statement
-    """Draw a list of texels into part of a framebuffer, and go back to the one before."""
-
-    def __init__(self, gpu: Gpu, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
-        self.gpu, self.target, self.size = gpu, target, size
-
-    def __enter__(self) -> None:
-        self.before = self.gpu.context.fbo
-        self.target.viewport = (0, 0, *self.size)
-        self.target.use()
-        self.gpu.context.enable_only(moderngl.NOTHING)
-
-    def __exit__(self, *_: object) -> None:
-        if self.before:
-            self.before.use()
+@contextmanager
+def drawing_into(gpu: Gpu, target: moderngl.Framebuffer, size: tuple[int, int]) -> Iterator[None]:
+    """Draw a list of texels into the lower left part of a framebuffer, and go back to the one before."""
+    before = gpu.context.fbo
+    target.viewport = (0, 0, *size)
+    target.use()
+    gpu.context.enable_only(moderngl.NOTHING)
+    try:
+        yield
+    finally:
+        if before:
+            before.use()

@@ -146,7 +146,7 @@ class Stage:
         self._prepare()
         self.painter.paint(self.scene, self.camera, self.clock.frame,
                            lambda: self._guard("failed in draw", self.scene.draw),
-                           lambda: self._guard("failed in draw_over", self.scene.draw_over), self._middle(),
+                           lambda: self._guard("failed in draw_over", self.scene.draw_over), self.middle,
                            lambda: self._guard("failed in labels", lambda: checked_labels(self.scene.labels())),
                            turns=bool(self._guard("failed in turns_with_camera", self.scene.turns_with_camera)))
 
@@ -175,14 +175,14 @@ class Stage:
         width, height = self.size
         place = (2.0 * across / width - 1.0, 1.0 - 2.0 * down / height)
         self._prepare()
-        origin, direction = self.camera.ray(place, width / height, self._middle())
+        origin, direction = self.camera.ray(place, width / height, self.middle)
         click = Click(place, origin, direction, width / height, height)
         return self._off_screen("failed in click", lambda: dict(self.scene.click(click)))
 
     @property
     def middle(self) -> tuple[float, float]:
         """Where in the picture, each -1 to 1, the camera's target stands."""
-        return self._middle()
+        return self._guard("failed in middle", lambda: checked_middle(self.scene.middle()))
 
     def color_scale(self) -> ColorScale | None:
         """What the picture's colours stand for, if they stand for a number."""
@@ -314,9 +314,6 @@ class Stage:
         except DemoscopeError:
             if well:
                 raise
-
-    def _middle(self) -> tuple[float, float]:
-        return self._guard("failed in middle", lambda: checked_middle(self.scene.middle()))
 
     def _off_screen(self, doing: str, work: Callable[[], Result]) -> Result:
         self._check_held()

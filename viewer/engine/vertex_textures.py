@@ -80,7 +80,7 @@ class VertexTextures:
                 texture.write(padded, (0, 0, WIDTH, lines))
 
     def run(self, name: str, rows: NDArray[Any], components: int, dtype: str, wanted: Wanted) -> None:
-        """Let the pass ``name`` make a vertex of each row."""
+        """Let the pass ``name`` make a vertex of each of ``rows`` (n, ``components``), sent as ``dtype``."""
         lines = -(-len(rows) // WIDTH)
         self._make_room(lines)
         self.count = len(rows)
@@ -98,7 +98,7 @@ class VertexTextures:
             everywhere.render(vertices=3)
 
     def warm_up(self, name: str, wanted: Wanted) -> None:
-        """Have ready what is made once and then kept: the table, and the pass as the driver runs it."""
+        """Have a pass ready as the driver runs it, before anything is timed."""
         self.samples.values.use(VALUES_UNIT)        # drivers compile for the kinds of textures in use
         self._given_to(name).use(LIST_UNIT)
         everywhere = self._pass(name, wanted)
@@ -151,6 +151,7 @@ class VertexTextures:
         self._made = [self._target, jump, self.normals, self.places, self._edges]
 
     def read(self, attachment: int) -> NDArray[np.float32]:
+        """The texels of all vertices, (count, 4): places are attachment 0, normals 1."""
         lines = -(-self.count // WIDTH)
         if not lines:
             return np.empty((0, 4), np.float32)

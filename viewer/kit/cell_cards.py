@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.kit import cell_words
+from viewer.kit.card import INK, NARROW, QUIET, WARNING, Line, Place, Rectangle, covers
 from viewer.kit.cell_model import case_triangles, microscope_model, sheet_frames, sheet_model, side_color
 from viewer.kit.marching_cases import CORNERS
 from viewer.kit.marching_cell import Cell, Crossing, edge_name, examine
 from viewer.kit.models import Frame, Model, Rgb, in_picture, rgb
-from viewer.kit.square_cell_card import INK, QUIET, WARNING, Line, Place, Rectangle
 
-NARROW = 1.15                   # pictures whose width is less than this times their height have the card below
 PAPER = "#f2f1edb8"             # behind words that may stand over the cell itself
 ONE_COLUMN = 12                 # more lines than these stand in two columns
 LINE_STEP = 0.0735              # from line to line at letter size 1, in half heights of the picture
@@ -63,8 +62,7 @@ class CellCard:
 
     def covers(self, place: Place) -> bool:
         """Whether a place in the picture lies on the card."""
-        left, bottom, right, top = self.rectangle
-        return left <= place[0] <= right and bottom <= place[1] <= top
+        return covers(self.rectangle, place)
 
 
 def room_for_card(aspect: float) -> Place:

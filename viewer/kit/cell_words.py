@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from viewer.kit.card import written
 from viewer.kit.marching_cell import Cell, edge_name
 
 Row = tuple["float | str", ...]
@@ -16,10 +17,7 @@ FACE_COLUMNS = ("face", "saddle", "trilinear", "here")
 
 def signed(value: float, digits: int = 3) -> str:
     """A number with its sign, as one writes it: ``+0.25``, ``\u22121.2``."""
-    if 0.0 < abs(value) < 1e-3 or abs(value) >= 1e4:
-        digits = min(digits, 2)         # long enough as it is
-    text = f"{value:+.{digits}g}".replace("e-0", "e-").replace("e+0", "e")
-    return text.replace("-", "\u2212")
+    return written(value, digits, "+")
 
 
 def corner_rows(cell: Cell) -> list[Row]:

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.kit.formula import Formula
+from viewer.kit.jumps import stay_apart
 
 Places = NDArray[np.float32]
 Values = NDArray[np.float32]
 
 QUICK_SAMPLES, QUICK_NODES = 75**3, 80      # up to which NumPy is quicker than a driver's compiler
-HALVINGS = 20
 
 
 @dataclass(frozen=True)
@@ -63,19 +63,9 @@ class FieldFunction:
     def jumps(self, starts: Places, ends: Places, A: Values, B: Values, level: float) -> NDArray[np.bool_]:
         """Which edges, from ``starts`` to ``ends`` (n, 3), the field jumps over the level: poles and steps.
 
-        The values at the ends stay apart however often the half without the change of sign is cut off. As in
-        isosurface/crossing.frag.
+        As in isosurface/crossing.frag.
         """
-        low, high = np.zeros(len(A), np.float32), np.ones(len(A), np.float32)
-        at_low, at_high, steps, below = A, B, ends - starts, A < 0.0
-        with np.errstate(all="ignore"):
-            for _ in range(HALVINGS):
-                middle = np.float32(0.5) * (low + high)
-                value = self.at(starts + middle[:, None] * steps) - np.float32(level)
-                lower = (value < 0.0) == below
-                low, high = np.where(lower, middle, low), np.where(lower, high, middle)
-                at_low, at_high = np.where(lower, value, at_low), np.where(lower, at_high, value)
-            return np.asarray(~(np.abs(at_high - at_low) <= 0.25 * np.abs(B - A)))
+        return stay_apart(self.at, starts, ends, A, B, level)
 
     def _evaluated(self, formula: Formula, x: Values, y: Values, z: Values) -> Values:
         found: Values = formula.evaluate(x=x, y=y, z=z, **dict(self.numbers)).astype(np.float32, copy=False)

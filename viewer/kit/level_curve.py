@@ -12,11 +12,12 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.kit.jumps import HALVINGS, stay_apart
+
 Points: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = NDArray[np.float64]
 Function: TypeAlias = Callable[[Points], Values]
 
-HALVINGS = 20
 STEPS = 12              # of the search for the nearest point, which as a rule needs three or four
 STEP = 1e-7             # between values of which a slope is taken
 CLOSE = 1e-10           # a search that moves no farther has come to rest
@@ -28,26 +29,9 @@ PROBES = 12             # along a ray, to find a change of sign
 def jumping(function: Function, start: Points, end: Points, level: float = 0.0) -> NDArray[np.bool_]:
     """Whether the function jumps through the level, rather than passing it, between ``start`` and ``end`` (n, 2).
 
-    The two points close in on the change of sign by halving. Where the function passes, the difference of the
-    values at both points shrinks along; where it jumps, as at a pole, it does not. Values that shrink to less
-    than a quarter count as passing; a place without a value as a jump.
+    See ``jumps.stay_apart``.
     """
-    low, high = start.copy(), end.copy()
-    value = np.stack([function(low), function(high)])
-    span = np.abs(value[1] - value[0])
-    still = np.arange(len(low))
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low[still] + high[still])
-        found = function(middle)
-        side = (found < level) != (value[0, still] < level)
-        low[still], high[still] = (np.where(side[:, None], low[still], middle),
-                                   np.where(side[:, None], middle, high[still]))
-        value[:, still] = np.where(side, value[0, still], found), np.where(side, found, value[1, still])
-        with np.errstate(invalid="ignore", over="ignore"):
-            still = still[~(np.abs(value[1, still] - value[0, still]) < 0.25 * span[still])]
-    jumps = np.zeros(len(low), np.bool_)
-    jumps[still] = True
-    return jumps
+    return stay_apart(function, start, end, function(start) - level, function(end) - level, level)
 
 
 def distances(function: Function, points: Points, reach: float, level: float = 0.0) -> Values:

@@ -17,13 +17,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit import bits
+from viewer.kit.interpolation import crossing_fraction
 from viewer.kit.marching_grid import MOST_SAMPLES, Grid, Topology, cells_touching, topology
 
 METHODS = ("cubes", "tetrahedra")
 TOPOLOGIES = ("table", "trilinear")
-# As near to a sample as a vertex may come, in edges: else those around a sample exactly at the level would
-# meet in one point, and their triangles would have no area.
-NEAREST = 1e-4
 
 Mesh = tuple[NDArray[np.float32], NDArray[np.int32]]
 
@@ -129,7 +127,7 @@ class CrossedEdges(NamedTuple):
     steps: NDArray[np.float64]
     A: NDArray[np.float64]
     B: NDArray[np.float64]
-    t: NDArray[np.float64]
+    t: NDArray[np.floating[Any]]
 
 
 def crossed_edges(found: Topology, samples: NDArray[Any], level: float, grid: Grid) -> CrossedEdges:
@@ -142,13 +140,6 @@ def crossed_edges(found: Topology, samples: NDArray[Any], level: float, grid: Gr
         A, B = (flat.take(ends_of).astype(np.float64) - level for ends_of in (starts, ends))
     steps = (np.arange(8)[:, None] >> np.arange(3) & 1).astype(np.float64)
     return CrossedEdges(grid.coordinates(starts).astype(np.float64), steps[directions], A, B, crossing_fraction(A, B))
-
-
-def crossing_fraction(A: NDArray[np.float64], B: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far along an edge a line from ``A`` to ``B`` is zero: t = A / (A - B), kept a little off the ends."""
-    with np.errstate(all="ignore"):
-        t = A / (A - B)
-    return np.clip(np.nan_to_num(t, nan=0.5), NEAREST, 1.0 - NEAREST)
 
 
 def vertices_in_use(found: Topology) -> NDArray[np.intp] | None:

@@ -9,7 +9,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from viewer.kit.marching import crossing_fraction
+from viewer.kit.interpolation import crossing_fraction, saddle_value
 from viewer.kit.marching_cases import (
     CORNERS,
     FACES,
@@ -121,10 +121,10 @@ def examine(values: ArrayLike, method: str = "cubes") -> Cell:
 def face_saddle(around: Sequence[float] | NDArray[np.float64]) -> float:
     """The value at the saddle of the bilinear function with these values around a face, opposite signs in turn.
 
-    (a c - b d) / (a + c - b - d) for the values a, b, c, d at the corners, one after the other.
+    The values are those at the corners, one after the other.
     """
-    a, b, c, d = (float(value) for value in around)
-    return (a * c - b * d) / (a + c - b - d)
+    a, b, c, d = around
+    return float(saddle_value(np.array([a, b, d, c], np.float64)))
 
 
 def edge_name(edge: Edge) -> str:
@@ -143,6 +143,6 @@ def _triangles(case: int, method: str) -> tuple[Sequence[Triangle], list[int]]:
 def _crossing(edge: Edge, values: NDArray[np.float64]) -> Crossing:
     start, end = edge[0], edge[0] | edge[1]
     A, B = float(values[start]), float(values[end])
-    t = float(crossing_fraction(np.float64(A), np.float64(B)))  # type: ignore[arg-type]
+    t = float(crossing_fraction(A, B))
     place = CORNERS[start] + t * (CORNERS[end] - CORNERS[start])
     return Crossing(edge, A, B, t, place)

@@ -25,7 +25,7 @@ cases 6 and 9 opposite corners are alike and there are two of each. These two ar
                 (Nielson and Hamann 1991). A saddle that is inside connects.
 
 *The crossing* of an edge with values A and B, less the level, lies at t = A / (A - B) of its length: where the
-straight line through both values is zero. It is kept ``CLEARANCE`` away from the corners, so that no segment
+straight line through both values is zero. It is kept ``NEAREST`` away from the corners, so that no segment
 has length zero. A cell that touches a sample which is infinite or no number yields nothing.
 """
 
@@ -38,6 +38,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from viewer.kit.interpolation import crossing_fraction, saddle_value
+
 Floats: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
 
@@ -47,7 +49,6 @@ EDGES = ((0, 1), (1, 2), (2, 1), (0, 2))
 EDGE_NAMES = ("bottom", "right", "top", "left")
 AMBIGUOUS = (6, 9)
 SADDLES = ("connect", "separate", "decider")
-CLEARANCE = 1e-4
 NOT_A_VALUE = 16            # the case of a cell of which a corner has no finite value
 
 
@@ -158,29 +159,13 @@ def answers(values: Floats, level: float, saddle: str, i: NDArray[np.intp], j: N
     return answer
 
 
-def saddle_value(corners: Floats) -> Floats:
-    """The bilinear function's value where it is level, from the values ``corners`` (..., 4) of corners 0 to 3."""
-    largest = np.abs(corners).max(axis=-1)
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        a, b, c, d = np.moveaxis(corners / largest[..., None], -1, 0)       # lest a product overflows
-        value: Floats = largest * (a * d - b * c) / (a + d - b - c)
-    return value
-
-
-def crossing(A: ArrayLike, B: ArrayLike) -> Floats:
-    """Where on an edge with values A and B, less the level, the straight line through both is zero."""
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        t = np.asarray(A / np.subtract(A, B))
-    return np.asarray(np.clip(np.where(np.isnan(t), 0.5, t), CLEARANCE, 1.0 - CLEARANCE))
-
-
 def crossings(values: Floats, level: float, spacing: tuple[float, float], cells: NDArray[np.intp],
               edges: NDArray[np.int8]) -> tuple[Floats, NDArray[np.intp]]:
     """The points (n, 2, 2) on ``edges`` (n, 2) of ``cells`` (n, 2), and a number for each edge of the grid."""
     corner, direction = np.array(EDGES).T[:, edges]
     i, j = cells[:, :1] + (corner & 1), cells[:, 1:] + (corner >> 1)
     along_x, along_y = direction & 1, direction >> 1
-    t = crossing(values[i, j] - level, values[i + along_x, j + along_y] - level)
+    t = crossing_fraction(values[i, j] - level, values[i + along_x, j + along_y] - level)
     points = np.stack([(i + t * along_x) * spacing[0], (j + t * along_y) * spacing[1]], axis=-1)
     return points, 2 * (i * values.shape[1] + j) + along_y
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.kit.card import INK, NARROW, QUIET, Line
 from viewer.kit.marching_squares_board import REACH, tile_corner
 from viewer.kit.sampled_square import SampledSquare
-from viewer.kit.square_cell_card import INK, NARROW, QUIET, Line
 
 LONGEST_FORMULA = 72
 RIM = 0.5 * (1.0 + REACH)       # the middle of the board's margin

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.kit.marching_squares import AMBIGUOUS, EDGE_NAMES, WALK, crossing, saddle_value, segments_of
+from viewer.kit.interpolation import crossing_fraction, saddle_value
+from viewer.kit.marching_squares import AMBIGUOUS, EDGE_NAMES, WALK, segments_of
 
 CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0))
 
@@ -95,6 +96,6 @@ class SquareCell:
     def _crossing(self, edge: int) -> Crossing:
         start, end = sorted(WALK[edge])
         A, B = self.values[start] - self.level, self.values[end] - self.level
-        t = float(crossing(A, B))
+        t = float(crossing_fraction(A, B))
         (x0, y0), (x1, y1) = CORNERS[start], CORNERS[end]
         return Crossing(edge, A, B, t, (x0 + t * (x1 - x0), y0 + t * (y1 - y0)))

@@ -6,33 +6,15 @@ Places are in the picture, (across, up), each -1 to 1; sizes in standard letter 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.kit.card import INK, NARROW, QUIET, WARNING, Line, Place, Rectangle, covers, written
 from viewer.kit.marching_squares import SADDLES
 from viewer.kit.square_cell import CORNERS, SquareCell
 
-Place: TypeAlias = tuple[float, float]
-Rectangle: TypeAlias = tuple[float, float, float, float]     # left, bottom, right, top
-
 MARGIN = 0.13                   # room around a drawn cell, in cells
-NARROW = 1.15                   # pictures whose width is less than this times their height have the card below
-INK, QUIET, WARNING = "#16181c", "#4a4e57", "#8a2f68"
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of text, or a word of one, at a place in the picture or, of three numbers, in the world."""
-
-    text: str
-    place: Place | tuple[float, float, float]
-    size: float = 0.72
-    align: Place = (0.0, 0.5)
-    color: str = INK
-    bold: bool = False
-    plate: str = ""
 
 
 @dataclass(frozen=True)
@@ -60,8 +42,7 @@ class Card:
 
     def covers(self, place: Place) -> bool:
         """Whether a place in the picture lies on the card."""
-        left, bottom, right, top = self.rectangle
-        return left <= place[0] <= right and bottom <= place[1] <= top
+        return covers(self.rectangle, place)
 
 
 def room_for_card(aspect: float) -> Place:
@@ -72,12 +53,6 @@ def room_for_card(aspect: float) -> Place:
 def card(cell: SquareCell, title: str, saddle: str, no_curve: str, aspect: float) -> Card:
     """The card for a cell; ``no_curve`` says why it yields nothing, where that is so."""
     return _Layout(cell, aspect).card(title, saddle, no_curve)
-
-
-def signed(number: float) -> str:
-    """A number as on a blackboard: three digits, a true minus."""
-    digits = 2 if 0.0 < abs(number) < 1e-3 or abs(number) >= 1e4 else 3     # long enough as it is
-    return f"{number:.{digits}g}".replace("-", "−").replace("e+0", "e").replace("e−0", "e−")
 
 
 class _Layout:
@@ -139,7 +114,7 @@ class _Layout:
         for (across, up), value in zip(CORNERS, self.cell.values, strict=True):
             away = (2.0 * up - 1.0) * (side * (1.0 + 2.0 * MARGIN) + 0.022)
             place = (x + (2.0 * across - 1.0) * side / self.aspect, y + away)
-            self.lines.append(Line(signed(value), place, 0.72 * self.letter, (0.5, 0.5), bold=True))
+            self.lines.append(Line(written(value), place, 0.72 * self.letter, (0.5, 0.5), bold=True))
 
     def reason(self, no_curve: str) -> float:
         """Why the cell yields nothing; returns where that ends."""
@@ -158,14 +133,14 @@ class _Layout:
         for column, word in zip(columns, ("edge", "A", "B", "t = A / (A − B)"), strict=True):
             self.write(word, column, top, color=QUIET)
         for row, crossing in enumerate(self.cell.crossings, 1):
-            words = (crossing.name, signed(crossing.A), signed(crossing.B), f"{crossing.t:.3f}")
+            words = (crossing.name, written(crossing.A), written(crossing.B), f"{crossing.t:.3f}")
             for column, word in zip(columns, words, strict=True):
                 self.write(word, column, top + row * step, bold=column == columns[3])
         return top + len(self.cell.crossings) * step + 0.05
 
     def both_answers(self, saddle: str, taken: str) -> list[Drawing]:
         """The two ways to join the crossings, and what decides between them."""
-        because = f"saddle value {signed(self.cell.saddle_value)}" if saddle == "decider" else "as you chose"
+        because = f"saddle value {written(self.cell.saddle_value)}" if saddle == "decider" else "as you chose"
         self.write(f"Ambiguous: {because}, so {taken}.", self.at(0.05, 0.468), self.at(0.825, 0.75), color=WARNING,
                    bold=True)
         side = self.at(min(0.08, 0.06 * self.aspect), 0.05 * min(1.0, self.aspect))

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from viewer.kit.interpolation import crossing_fraction
 from viewer.kit.trilinear_cell import CORNERS, DOUBTFUL, EDGES
 from viewer.kit.trilinear_decision import joined_faces, tunnels
 
 Indices = NDArray[np.intp]
 Values = NDArray[np.float64]
 
-CLEARANCE = 1e-4    # a crossing's least distance from the ends of its edge, so that no triangle shrinks to nothing
 
 
 class Grid(NamedTuple):
@@ -109,10 +109,3 @@ def grid_crossings(grid: Grid, cells: Cells) -> tuple[Values, NDArray[np.int32]]
     starts = np.array([start for start, _ in EDGES])
     shift = np.repeat(np.arange(3), 4) * inside.size + (CORNERS @ grid.strides)[starts]
     return np.concatenate(found), number.reshape(-1).take(cells.origin[:, None] + shift)
-
-
-def crossing_fraction(A: Values, B: Values) -> Values:
-    """Where between two samples of excess ``A`` and ``B`` a line is zero, kept from the ends; the middle if too far."""
-    with np.errstate(all="ignore"):
-        t = A / (A - B)
-    return np.clip(np.nan_to_num(t, nan=0.5), CLEARANCE, 1.0 - CLEARANCE)

@@ -140,6 +140,13 @@ class LiveStage:
             self._failure = None
         return scale
 
+    def card_below(self) -> bool:
+        """Whether the scene has moved up to make room below; not while it fails, which ``render`` tells."""
+        try:
+            return self.stage.middle[1] > 0.0
+        except Exception:
+            return False
+
     def release(self) -> None:
         """Free the stage."""
         self.stage.release()

@@ -44,7 +44,7 @@ class PictureView:
         behind.add_image(shown, *corners, imgui.ImVec2(0, 1), imgui.ImVec2(1, 0))
         scale = self.bench.live.color_scale() if self.bench.live else None
         if scale:
-            draw_color_scale(scale, box, above=stage.middle[1] > 0.0)   # something lies at the bottom then
+            draw_color_scale(scale, box, above=bool(self.bench.live and self.bench.live.card_below()))
         if self.bench.remarker and not self.bench.problem:
             self._plate.draw(self.bench.remarker.remarks, box)
         self._move_camera()
