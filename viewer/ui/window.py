@@ -54,9 +54,21 @@ def _opened(size: tuple[int, int]) -> GlfwWindow:
     except Exception as error:
         raise plain_words("; ".join([*complaints, str(error)])) from error
     glfw.set_error_callback(lambda code, text: None)
+    _fit_on_screen(window._window)
     window.exit_key = window.fullscreen_key = None
     window.ctx.gc_mode = None  # type: ignore[assignment]
     return window
+
+
+def _fit_on_screen(handle: Any) -> None:
+    """Make a window that is larger than the screen as large as that: not every window manager does."""
+    monitor = glfw.get_primary_monitor()
+    if monitor:
+        left, top, width, height = glfw.get_monitor_workarea(monitor)
+        wide, high = glfw.get_window_size(handle)
+        if wide > width or high > height:
+            glfw.set_window_size(handle, min(wide, width), min(high, height))
+            glfw.set_window_pos(handle, left, top)
 
 
 def _begin(bench: Workbench, scene_name: str | None, params: Mapping[str, object] | None,
