@@ -83,3 +83,13 @@ def _drive(environment: dict[str, str], pack: Path) -> None:
     time.sleep(0.3)
     xdotool("windowsize", window, "700", "500")
     time.sleep(0.3)
+
+
+def test_a_window_larger_than_the_screen_is_made_to_fit(display: str) -> None:
+    """On a small projector without a window manager too, where nothing else would see to it."""
+    program = ("import time; from viewer.ui.window import _opened; window = _opened((2000, 1500)); import glfw\n"
+               "for _ in range(20): glfw.poll_events(); time.sleep(0.02)\n"
+               "print(*glfw.get_window_size(window._window)); window.destroy()")
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, env={**os.environ, "DISPLAY": display},
+                          capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["1280", "800"], done.stderr
