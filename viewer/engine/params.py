@@ -4,7 +4,8 @@
         amplitude: float = slider(0.05, 0.0, 0.5, "Ripple height, in radii")
 
 Reading ``params.amplitude`` gives a float; assigning checks the value first. A name in a formula that
-nobody declared becomes a slider of its own for as long as the formula uses it.
+nobody declared becomes a slider of its own for as long as the formula uses it. A class with several bases
+has the parameters of each, in the order of the bases.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ class Parameters:
         taken = [name for name in own if hasattr(Parameters, name)]
         if taken:
             raise ParameterError(f"{taken[0]} cannot name a parameter: Parameters already uses it")
-        cls.declared = {**cls.declared, **own}
+        inherited = [base.declared for base in cls.__bases__ if issubclass(base, Parameters)]
+        cls.declared = {name: field for fields in (*inherited, own) for name, field in fields.items()}
         cls._conditions = conditions_of(cls.declared)
 
     def __init__(self, values: Mapping[str, object] | None = None, *, seed: int = 0) -> None:
