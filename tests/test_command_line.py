@@ -24,6 +24,7 @@ from viewer import cli
 pytestmark = pytest.mark.usefixtures("context")
 Run = Callable[..., str]
 SPHERE = ["rippling_sphere", "--set", "subdivision=2"]
+WITH_POSTER = packs.WALK.replace("    studio =", "    poster = 12\n    studio =")
 
 
 @pytest.fixture
@@ -141,6 +142,42 @@ def test_capture_writes_a_picture_for_each_frame(run: Run, tmp_path: Path, frame
     assert all(pixels(file).shape == (30, 40, 4) for file in files)
 
 
+def test_a_capture_without_frames_shows_the_poster(run: Run, tmp_path: Path, scene_pack: ScenePack) -> None:
+    """The frame that the scene names, or 0; frames that are asked for come first."""
+    pack = scene_pack(tile=packs.TILE, walk=WITH_POSTER)
+    words = ["--pack", pack, "--size", "16x9"]
+    for name, more, expected in (("walk", [], "walk-000012"), ("tile", [], "tile-000000"),
+                                 ("walk", ["--frames", 0], "walk-000000")):
+        folder = tmp_path / expected
+        run("capture", name, "--out", folder, *words, *more)
+        assert [file.stem for file in folder.iterdir()] == [expected]
+    run("capture", "walk", "--out", tmp_path, "--frames", 12, *words)
+    assert (tmp_path / "walk-000012.png").read_bytes() == (tmp_path / "walk-000012/walk-000012.png").read_bytes()
+
+
+def test_measurements_start_at_frame_0_whatever_the_poster(run: Run, tmp_path: Path, scene_pack: ScenePack) -> None:
+    """And so do exports."""
+    pack = scene_pack(walk=WITH_POSTER)
+    assert json.loads(run("measure", "walk", "--pack", pack))["steps"] == 0
+    run("export", "walk", "--pack", pack, "--out", tmp_path / "a.npz")
+    assert np.load(tmp_path / "a.npz")["position"] == 0.5
+
+
+def test_list_as_json_tells_the_poster(run: Run, scene_pack: ScenePack) -> None:
+    """The frame, 0 where the scene names none."""
+    listed = json.loads(run("list", "--json", "--pack", scene_pack(tile=packs.TILE, walk=WITH_POSTER)))
+    assert {scene["name"]: scene["poster"] for scene in listed}.items() >= {("tile", 0), ("walk", 12)}
+
+
+@pytest.mark.parametrize("poster", ["-1", "1.5", "None", "True", "10**10"])
+def test_a_poster_that_is_no_frame_is_one_line(tmp_path: Path, refused: Run, scene_pack: ScenePack,
+                                               poster: str) -> None:
+    """With the file and what is allowed."""
+    pack = scene_pack(walk=WITH_POSTER.replace("poster = 12", f"poster = {poster}"))
+    assert "walk.py: poster has to be a frame from 0 to 1000000000" in refused(
+        "capture", "walk", "--pack", pack, "--out", tmp_path / "pictures")
+
+
 def test_a_long_capture_shows_its_progress(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A bar on stderr, and on stdout how many, where, and how fast."""
     assert cli.main(["capture", *SPHERE, "--out", str(tmp_path), "--frames", "0:12", "--size", "8x8"]) == 0
@@ -211,6 +248,20 @@ def test_no_display_draws_every_scene(tmp_path: Path, monkeypatch: pytest.Monkey
 
     assert cli.main(["walk", "--pack", str(pack), "--size", "32x20", "--set", "stride=0.5"]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "captures/walk-000000.png")
+
+
+def test_no_display_draws_the_poster(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene_pack: ScenePack,
+                                     capsys: pytest.CaptureFixture[str]) -> None:
+    """A scene that is empty at first is shown as it is best seen, whether it was named or not."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.chdir(tmp_path)
+    pack = scene_pack(tile=packs.TILE, walk=WITH_POSTER)
+    for words in ([], ["walk"]):
+        assert cli.main([*words, "--pack", str(pack), "--size", "32x20"]) == 0
+        assert str(tmp_path / "captures/walk-000012.png") in capsys.readouterr().out.splitlines()
+    assert not (tmp_path / "captures/walk-000000.png").exists()
+    assert (tmp_path / "captures/tile-000000.png").exists()
 
 
 def test_measure_gives_tables_as_rows(run: Run, scene_pack: ScenePack) -> None:

@@ -84,11 +84,12 @@ def run_list(options: argparse.Namespace) -> int:
 
 
 def run_capture(options: argparse.Namespace) -> int:
-    """Pictures of frames."""
+    """Pictures of frames, or of the poster frame."""
     from viewer.output.capture import capture_timed, parse_frames
 
-    frames = parse_frames(options.frames)
+    chosen = None if options.frames is None else parse_frames(options.frames)
     with _stage(options) as stage:
+        frames = [stage.scene_class.poster] if chosen is None else chosen
         if not options.panels:
             _tell(stage, capture_timed(stage, frames, options.out))
             return 0
@@ -153,7 +154,7 @@ def _pictures_of_all(catalog: Catalog, options: argparse.Namespace) -> int:
         try:
             with headless(entry.name, size=options.size, samples=options.samples, params=options.set,
                           preset=options.preset, seed=options.seed, camera=options.camera, packs=options.pack) as stage:
-                print(*capture(stage, [0], PICTURE_FOLDER.absolute()), sep="\n")
+                print(*capture(stage, [stage.scene_class.poster], PICTURE_FOLDER.absolute()), sep="\n")
         except (SceneError, ShaderError) as error:
             status = _complain(error)
     return status

@@ -48,7 +48,7 @@ def _parser() -> Parser:
     pictures = _command(commands, "capture", "pictures of a scene, no display needed")
     pictures.add_argument("scene")
     pictures.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the pictures")
-    pictures.add_argument("--frames", default="0", help="0,30,60 or 0:120 or 0:120:4 (default 0)")
+    pictures.add_argument("--frames", help="0,30,60 or 0:120 or 0:120:4 (default: the scene's poster)")
     pictures.add_argument("--panels", action="store_true", help="draw the window's panels too")
     _scene_options(pictures)
     _picture_options(pictures, DEFAULT_SIZE)

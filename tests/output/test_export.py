@@ -135,3 +135,83 @@ def test_an_empty_mesh_is_told_and_writes_no_file(tmp_path: Path, kind: str) -> 
     with pytest.raises(ExportError, match="has no triangles now"):
         export(empty, tmp_path / f"empty.{kind}")
     assert list(tmp_path.iterdir()) == []
+
+
+# Particles
+
+SOME = {
+    "velocity": np.array([[0.1, -9.81, 1e-30], [3.0, 2.0, 1.0]], np.float32),
+    "age": np.array([0.25, 1 / 3], np.float32),
+    "mass": np.array([1 / 3, 1e300]),
+    "size": np.array([0.5, 65504.0], np.float16),
+    "generation": np.array([0, -3], np.int32),
+    "bounces": np.array([255, 7], np.uint8),
+    "alive": np.array([True, False]),
+    "identity": np.array([2**32 - 1, 0], np.uint32),
+    "seed": np.array([2**53, 12345678901], np.int64),
+    "position": np.array([[1.5, 1e-7, -3.0], [np.pi, np.nan, np.inf]], np.float32),
+}
+IN_PLY = {"x": "f4", "y": "f4", "z": "f4", "vx": "f4", "vy": "f4", "vz": "f4", "age": "f4", "mass": "f8", "size": "f4",
+          "generation": "i4", "bounces": "u1", "alive": "u1", "identity": "u4", "seed": "f8"}
+
+
+def test_particles_as_ply_come_back_exactly(tmp_path: Path) -> None:
+    """In another program: each number of each particle under its name, none of them rounded."""
+    export(SOME, tmp_path / "a.ply")
+    data = plyfile.PlyData.read(tmp_path / "a.ply")
+    assert not data.text and data.byte_order == "<" and [element.name for element in data] == ["vertex"]
+    rows = data["vertex"].data
+    assert {name: rows.dtype[name].str[1:] for name in rows.dtype.names} == IN_PLY
+    split = {f"{kind}{axis}": SOME[name][:, place] for kind, name in (("", "position"), ("v", "velocity"))
+             for place, axis in enumerate("xyz")}
+    for name, values in {**{name: SOME[name] for name in SOME if name in IN_PLY}, **split}.items():
+        assert np.array_equal(rows[name], values, equal_nan=name in "xyz"), name
+    assert list(tmp_path.iterdir()) == [tmp_path / "a.ply"]
+
+
+def test_particles_open_in_trimesh(tmp_path: Path) -> None:
+    """As a cloud of points."""
+    points = {"position": np.random.default_rng(1).normal(size=(1000, 3)).astype(np.float32)}
+    export(points, tmp_path / "a.ply")
+    assert np.array_equal(trimesh.load(tmp_path / "a.ply").vertices, points["position"])
+
+
+@pytest.mark.parametrize("kind", ["ply", "npz"])
+def test_no_particles_are_a_file_too(tmp_path: Path, kind: str) -> None:
+    """With no rows, but with every name."""
+    export({name: array[:0] for name, array in SOME.items()}, tmp_path / f"a.{kind}")
+    if kind == "npz":
+        assert {name: (len(array), array.dtype) for name, array in np.load(tmp_path / "a.npz").items()} == {
+            name: (0, array.dtype) for name, array in SOME.items()}
+        return
+    rows = plyfile.PlyData.read(tmp_path / "a.ply")["vertex"].data
+    assert len(rows) == 0 and set(rows.dtype.names) == set(IN_PLY)
+
+
+@pytest.mark.parametrize("kind", ["obj", "stl"])
+def test_a_mesh_file_holds_no_particles(tmp_path: Path, kind: str) -> None:
+    """It says which kinds do."""
+    with pytest.raises(ExportError, match=rf"a\.{kind}: \.{kind} holds no particles; export them as \.ply or \.npz$"):
+        export(SOME, tmp_path / f"a.{kind}")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("name", "values", "message"), [
+    ("seed", np.array([1, 2**53 + 1]), r"seed has numbers beyond 2\^53, which PLY cannot hold; export it as \.npz"),
+    ("seed", np.array([1, -2**63]), r"seed has numbers beyond 2\^53"),
+    ("seed", np.array([1, 2**64 - 1], np.uint64), r"seed has numbers beyond 2\^53"),
+    ("springs", np.zeros((5, 2), np.int32), r"springs is an array of 5 by 2, not of 2 numbers, one row for each"),
+    ("velocity", np.zeros((1, 3)), r"velocity is an array of 1 by 3, not of 2 numbers by 3, one row for each"),
+    ("count", np.array(2), r"count is an array of one number, not of 2 numbers"),
+    ("vx", np.zeros(2), r"two properties would be named vx; export it as \.npz"),
+    ("two words", np.zeros(2), r"PLY has no property two words of type float64; export it as \.npz"),
+    ("mass", np.zeros(2, np.longdouble), r"PLY has no property mass of type (longdouble|float\d+)"),
+])
+def test_what_ply_cannot_hold_is_refused(tmp_path: Path, name: str, values: NDArray[np.generic],
+                                         message: str) -> None:
+    """With the array's name, and nothing written; NPZ takes it as it is."""
+    with pytest.raises(ExportError, match=message):
+        export({**SOME, name: values}, tmp_path / "a.ply")
+    assert list(tmp_path.iterdir()) == []
+    export({**SOME, name: values}, tmp_path / "a.npz")
+    assert np.array_equal(np.load(tmp_path / "a.npz")[name], values)

@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from viewer.engine.camera import Orbit
+from viewer.engine.clock import LAST_FRAME
 from viewer.engine.fields import nearest
 from viewer.engine.params import Parameters
 from viewer.engine.scene import Scene, SceneError, Studio
@@ -40,16 +41,17 @@ class SceneEntry:
         scene = found[0]
         for name, kind, right in (("camera", "an Orbit", isinstance(scene.camera, Orbit)),
                                   ("studio", "a Studio", isinstance(scene.studio, Studio)),
+                                  ("poster", f"a frame from 0 to {LAST_FRAME}", _is_frame(scene.poster)),
                                   ("Params", "a class derived from Parameters", _is_parameters(scene.Params))):
             if not right:
                 raise SceneError(f"{self.file}: {name} has to be {kind}")
         return scene
 
     def describe(self) -> dict[str, Any]:
-        """Name, one-line description and parameters, ready for JSON."""
+        """Name, one-line description, poster frame and parameters, ready for JSON."""
         scene = self.load()
         parameters = [field.describe() for field in scene.Params.declared.values()]
-        return {"name": self.name, "description": summary(scene), "parameters": parameters}
+        return {"name": self.name, "description": summary(scene), "poster": scene.poster, "parameters": parameters}
 
     def _run(self) -> ModuleType:
         name = f"demoscope_scene_{self.name}"
@@ -61,6 +63,10 @@ class SceneEntry:
         except (Exception, SystemExit) as error:
             raise scene_error(self, "cannot be loaded", error) from error
         return module
+
+
+def _is_frame(thing: object) -> bool:
+    return type(thing) is int and 0 <= thing <= LAST_FRAME
 
 
 def _is_parameters(thing: object) -> bool:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from viewer.engine.fields import Field, Uniform
+from viewer.kit.srgb import code_of, color_of, linear_light
+
+__all__ = ["Color", "linear_light"]
 
 
 class Color(Field[tuple[float, float, float]]):
@@ -26,21 +29,14 @@ class Color(Field[tuple[float, float, float]]):
             return [float(channel) for channel in value]  # type: ignore[attr-defined]
         text = value.strip()
         if text.startswith("#"):
-            if len(text) != 7:
-                raise ValueError
-            return [channel / 255.0 for channel in bytes.fromhex(text[1:])]
+            return list(color_of(text))
         return [float(channel) for channel in text.split(",")]
 
     def text(self, value: tuple[float, float, float]) -> str:
-        return "#" + "".join(f"{round(channel * 255):02x}" for channel in value)
+        return code_of(value)
 
     def stored(self, value: tuple[float, float, float]) -> str:
         return self.text(value)
 
     def uniform(self, value: tuple[float, float, float]) -> Uniform:
         return tuple(linear_light(channel) for channel in value)
-
-
-def linear_light(encoded: float) -> float:
-    """One sRGB channel in 0 to 1 as linear light (IEC 61966-2-1)."""
-    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4

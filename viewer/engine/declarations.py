@@ -15,6 +15,7 @@ from typing import Any
 from viewer.engine.color_field import Color
 from viewer.engine.file_field import File
 from viewer.engine.formula_field import FormulaField
+from viewer.engine.life_fields import GradientField, LifeCurveField
 from viewer.engine.number_fields import Integer, Interval, Slider
 from viewer.engine.word_fields import Choice, Text, Toggle
 
@@ -38,10 +39,11 @@ def integer(default: int, minimum: int, maximum: int, help: str, *, unit: str = 
 
 
 def interval(default: tuple[float, float], minimum: float, maximum: float, help: str, *, unit: str = "",
-             logarithmic: bool = False, rebuild: bool = False, group: str = "", when: str = "") -> Any:
-    """A range inside ``minimum`` to ``maximum``, as a pair."""
-    return Interval(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic,
-                    rebuild=rebuild).placed(group, when)
+             logarithmic: bool = False, rebuild: bool = False, handy: tuple[float, float] | None = None,
+             group: str = "", when: str = "") -> Any:
+    """A range inside ``minimum`` to ``maximum``, as a pair; dragging suits the part that is ``handy``."""
+    return Interval(default, minimum, maximum, help, unit=unit, logarithmic=logarithmic, rebuild=rebuild,
+                    handy=handy).placed(group, when)
 
 
 def toggle(default: bool, help: str, *, rebuild: bool = False, group: str = "", when: str = "") -> Any:
@@ -58,6 +60,20 @@ def choice(default: str, options: Sequence[str] | Mapping[str, str], help: str, 
 def color(default: str, help: str, *, rebuild: bool = False, group: str = "", when: str = "") -> Any:
     """A colour, declared as ``"#ff8800"`` and read as sRGB in 0 to 1; in shaders a linear vec3."""
     return Color(default, help, rebuild=rebuild).placed(group, when)
+
+
+def curve(default: object, minimum: float, maximum: float, help: str, *, unit: str = "", rebuild: bool = False,
+          group: str = "", when: str = "") -> Any:
+    """A number over a life, ``"0:0, 0.2:1, 1:0"``; read as a ``viewer.kit.life_curve.LifeCurve``, not in shaders.
+
+    Its values stay from ``minimum`` to ``maximum``.
+    """
+    return LifeCurveField(default, minimum, maximum, help, unit=unit, rebuild=rebuild).placed(group, when)
+
+
+def gradient(default: object, help: str, *, rebuild: bool = False, group: str = "", when: str = "") -> Any:
+    """A colour over a life, ``"0:#ffffff, 1:#300000"``; read as a ``viewer.kit.gradient.Gradient``, not in shaders."""
+    return GradientField(default, help, rebuild=rebuild).placed(group, when)
 
 
 def text(default: str, help: str, *, longest: int = 200, pattern: str = "", example: str = "",

@@ -1,4 +1,4 @@
-"""What the nine kinds of parameter share: parsing, limits and three spellings.
+"""What the eleven kinds of parameter share: parsing, limits and three spellings.
 
 A field is declared once, in a scene's ``Params``. Its ``parse`` takes a Python value of the kind or
 the text that the command line takes; ``text`` gives that text back; ``stored`` gives what a preset or

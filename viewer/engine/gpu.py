@@ -95,10 +95,27 @@ class Gpu:
         self.own(made, label)
         return made
 
-    def depth_texture(self, size: tuple[int, int], label: str = "") -> moderngl.Texture:
+    def volume(self, size: tuple[int, int, int], components: int, data: ArrayLike | None = None, *,
+               dtype: str = "f4", label: str = "") -> moderngl.Texture3D:
+        """A 3D texture, interpolated linearly and without end beyond its border; raises GpuError beyond the limit.
+
+        ``data`` holds the texels of the first row along x first, then the next along y, then the next layer along z.
+        """
+        most = int(self.context.info["GL_MAX_3D_TEXTURE_SIZE"])
+        if not all(1 <= extent <= most for extent in size):
+            raise GpuError(f"a volume of {'x'.join(map(str, size))} is outside 1x1x1 to {most}x{most}x{most}, "
+                           "what this GPU takes")
+        texels = None if data is None else np.ascontiguousarray(data)
+        made = self.context.texture3d(size, components, texels, dtype=dtype)
+        made.filter = moderngl.LINEAR, moderngl.LINEAR
+        made.repeat_x = made.repeat_y = made.repeat_z = False
+        self.own(made, label)
+        return made
+
+    def depth_texture(self, size: tuple[int, int], label: str = "", *, samples: int = 0) -> moderngl.Texture:
         """A depth texture, readable by shaders."""
         self.check_size(size, "a depth texture")
-        made = self.context.depth_texture(size)
+        made = self.context.depth_texture(size, samples=samples)
         self.own(made, label)
         return made
 

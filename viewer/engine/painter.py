@@ -25,7 +25,7 @@ class Painter:
     """Owns what is drawn with and into, apart from the scene's own: frame block, set, picture and labels."""
 
     def __init__(self, context: moderngl.Context, shaders: ShaderFolders, plan: Studio, size: tuple[int, int],
-                 samples: int) -> None:
+                 samples: int, *, sprites: bool = False) -> None:
         self.context = context
         self._set_arena = Gpu(context, shaders)
         self._picture_arena = Gpu(context, shaders)
@@ -34,19 +34,22 @@ class Painter:
         self._shadow_shows: Hashable = None
         try:
             self.studio = StudioSet(self._set_arena, plan)
-            self.picture = Picture(self._picture_arena, size, samples)
+            self.picture = Picture(self._picture_arena, size, samples, sprites=sprites)
         except BaseException:
             self.release()
             raise
 
     def paint(self, scene: Scene, camera: OrbitCamera, frame: int, draw: Callable[[], None],
-              draw_over: Callable[[], None], middle: tuple[float, float] = (0.0, 0.0),
+              draw_over: Callable[[], None], draw_sprites: Callable[[moderngl.Texture], None],
+              middle: tuple[float, float] = (0.0, 0.0),
               labels: Callable[[], tuple[Inscription, ...]] = tuple, *, turns: bool = False) -> None:
         """Draw ``scene`` by calling ``draw`` once for its shadow, where that can have changed, and once in colour.
 
-        ``draw_over`` comes after the set; what ``labels`` gives is lettered over the finished picture. ``turns``
-        tells that the shadow depends on the camera.
+        ``draw_over`` comes after the set; then ``draw_sprites``, with the scene's depth, where the scene has any;
+        what ``labels`` gives is lettered over the finished picture. ``turns`` tells that the shadow depends on the
+        camera.
         """
+        self._follow_sprites(scene.has_sprites())
         self._cast_shadow(scene, frame, camera.look if turns else None, draw)
         self.set_moment(camera, frame, middle)
         self.picture.begin()
@@ -59,11 +62,7 @@ class Painter:
             plain_state(self.context)
         self.picture.go_on()
         self.studio.draw()
-        plain_state(self.context)
-        try:
-            draw_over()
-        finally:
-            plain_state(self.context)
+        self._paint_over(draw_over, draw_sprites)
         self.picture.go_on()
         self._lettering.compose(inscriptions, self.picture.size)
         self.picture.finish()
@@ -78,14 +77,7 @@ class Painter:
 
     def resize(self, size: tuple[int, int], samples: int) -> None:
         """Pictures of another size from now on; raises GpuError beyond the driver's limits, changing nothing."""
-        arena = Gpu(self.context, self._picture_arena.shaders)
-        try:
-            picture = Picture(arena, size, samples)
-        except BaseException:
-            arena.release()
-            raise
-        self._picture_arena.release()
-        self._picture_arena, self.picture = arena, picture
+        self._exchange_picture(size, samples, sprites=self.picture.sprites is not None)
 
     def furnish(self, plan: Studio) -> None:
         """Put up another set, or if that fails keep the present one."""
@@ -121,6 +113,36 @@ class Painter:
         moves = scene.simulates or scene.reads_time or scene.gpu.reads_time
         return (scene, scene.params.revision, scene.gpu.generation, self._set_arena.generation,
                 frame if moves else None)
+
+    def _follow_sprites(self, wanted: bool) -> None:
+        """A picture with a layer for sprites while the scene draws some, and one without while it does not."""
+        if wanted != (self.picture.sprites is not None):
+            self._exchange_picture(self.picture.size, self.picture.samples, sprites=wanted)
+
+    def _exchange_picture(self, size: tuple[int, int], samples: int, *, sprites: bool) -> None:
+        arena = Gpu(self.context, self._picture_arena.shaders)
+        try:
+            picture = Picture(arena, size, samples, sprites=sprites)
+        except BaseException:
+            arena.release()
+            raise
+        self._picture_arena.release()
+        self._picture_arena, self.picture = arena, picture
+
+    def _paint_over(self, draw_over: Callable[[], None],
+                    draw_sprites: Callable[[moderngl.Texture], None]) -> None:
+        """Draw what comes after the set: over it, then, if the picture has a layer for them, sprites."""
+        layer = self.picture.sprites
+        try:
+            plain_state(self.context)
+            draw_over()
+            if layer:
+                layer.begin()
+                plain_state(self.context)
+                layer.blend()
+                draw_sprites(layer.scene_depth)
+        finally:
+            plain_state(self.context)
 
     def _cast_shadow(self, scene: Scene, frame: int, look: Hashable, draw: Callable[[], None]) -> None:
         """Draw the shadow unless it shows the same already; ``look`` is the camera's, where that matters to it."""

@@ -13,10 +13,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, TypeAlias
 
+import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -28,6 +29,7 @@ from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
 from viewer.engine.matrices import Matrix
 from viewer.engine.params import Parameters
+from viewer.engine.rewind import Snapshot
 from viewer.errors import DemoscopeError
 
 Geometry: TypeAlias = dict[str, NDArray[Any]]
@@ -136,6 +138,13 @@ def checked_middle(middle: Any) -> tuple[float, float]:
     return across, up
 
 
+def checked_setting(setting: Any) -> Studio:
+    """What a scene's ``setting`` gave; raises TypeError for anything but a Studio."""
+    if not isinstance(setting, Studio):
+        raise TypeError("setting gives no Studio")
+    return setting
+
+
 def checked_measurements(measurements: Any) -> Measurements:
     """What a scene's ``measure`` gave; raises TypeError for what is neither a number nor a Curve."""
     named = dict(measurements or {})
@@ -152,6 +161,7 @@ class Scene:
     Params: ClassVar[type[Parameters]] = Parameters
     camera: ClassVar[Orbit] = Orbit()
     studio: ClassVar[Studio] = Studio()
+    poster: ClassVar[int] = 0       # the frame that shows it best: drawn where nobody chose one
 
     gpu: Gpu
     params: Any
@@ -170,6 +180,11 @@ class Scene:
         scene.gpu, scene.params = gpu, params
         scene.__init__(gpu, params)  # type: ignore[misc]
         return scene
+
+    @classmethod
+    def has_sprites(cls) -> bool:
+        """Whether it has a ``draw_sprites``, so that its picture needs the layer for them."""
+        return cls.draw_sprites is not Scene.draw_sprites
 
     @property
     def frame(self) -> int:
@@ -198,6 +213,17 @@ class Scene:
     def update(self, dt: float) -> None:
         """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""
 
+    def steered_by(self) -> Hashable:
+        """What the simulation follows from: while this stays equal, the same frames come again. By default everything."""
+        return int(self.params.revision)
+
+    def snapshot(self) -> Snapshot | None:
+        """All that the frames to come follow from, so that going back in time can start there; None: not kept."""
+        return None
+
+    def restore(self, snapshot: Any) -> None:
+        """Stand again where a ``snapshot`` was taken."""
+
     def prepare(self) -> None:
         """Make what follows from parameters and frame; called before each drawing, measuring and exporting.
 
@@ -210,6 +236,16 @@ class Scene:
 
     def draw_over(self) -> None:
         """Draw what comes after the set, in colour only: what one sees through, and cards in the picture."""
+
+    def draw_sprites(self, scene_depth: moderngl.Texture) -> None:
+        """Draw what is translucent and many into a layer over the picture; scenes without leave this out.
+
+        The layer has one sample a pixel and is blended in linear light: a fragment's rgb is the light that it
+        adds, its alpha how much of what lies behind it hides: 0 only adds, 1 is opaque (premultiplied alpha,
+        Porter and Duff 1984). What lies behind solid things is hidden; no depth is written, so that the order
+        of drawing counts where alpha is not 0. ``scene_depth`` holds the depth of the solid things, 0 to 1 as in
+        the window, in red; fetch it at ``ivec2(gl_FragCoord.xy)`` to let sprites fade where they touch them.
+        """
 
     def geometry(self) -> Geometry:
         """What the GPU made for this frame, as named arrays."""
@@ -226,6 +262,10 @@ class Scene:
     def click(self, click: Click) -> Mapping[str, object]:
         """Which parameters a click on the picture sets, and to what; none by default."""
         return {}
+
+    def setting(self) -> Studio:
+        """The set that the scene stands in now; its ``studio``, unless parameters choose another."""
+        return self.studio
 
     def middle(self) -> tuple[float, float]:
         """Where in the picture, each -1 to 1, the camera's target stands: aside where something else needs room."""

@@ -20,6 +20,7 @@ from viewer.engine.painter import Painter
 from viewer.engine.params import Parameters
 from viewer.engine.picture import Picture, checked_size
 from viewer.engine.presets import Preset
+from viewer.engine.rewind import Rewind
 from viewer.engine.scene import (
     ColorScale,
     Geometry,
@@ -29,6 +30,7 @@ from viewer.engine.scene import (
     checked_measurements,
     checked_middle,
     checked_scale,
+    checked_setting,
 )
 from viewer.engine.shaders import ShaderError
 from viewer.errors import DemoscopeError
@@ -51,11 +53,13 @@ class Stage:
         self._released = False
         self._prepares_well, self._rendered_revision = True, -1
         self.clock = Clock()
+        self._rewind = Rewind()
         self.scene_class = entry.load()
         self.params: Parameters = self._guard("cannot take its parameters",
                                               lambda: self.scene_class.Params(params, seed=seed))
         self.camera = OrbitCamera(self.scene_class.camera)
-        self.painter = Painter(context, entry.shaders, self.scene_class.studio, checked_size(size), samples)
+        self.painter = Painter(context, entry.shaders, self.scene_class.studio, checked_size(size), samples,
+                               sprites=self.scene_class.has_sprites())
         try:
             self.scene = self._built(self.scene_class, self.params)
         except BaseException:
@@ -122,7 +126,7 @@ class Stage:
         """Go to ``frame``: exactly where playing from 0 gets, forwards or backwards."""
         frame = checked_frame(frame)
         if self.scene.simulates and frame < self.clock.frame:
-            self._exchange(self.scene_class, self.params, frame)
+            self._go_back(frame)
         else:
             self._play_to(frame)
 
@@ -144,9 +148,12 @@ class Stage:
         if self.params.revision != self._rendered_revision:
             self.scene.reads_time, self._rendered_revision = False, self.params.revision
         self._prepare()
+        self.painter.furnish(self._guard("failed in setting", lambda: checked_setting(self.scene.setting())))
         self.painter.paint(self.scene, self.camera, self.clock.frame,
                            lambda: self._guard("failed in draw", self.scene.draw),
-                           lambda: self._guard("failed in draw_over", self.scene.draw_over), self.middle,
+                           lambda: self._guard("failed in draw_over", self.scene.draw_over),
+                           lambda depth: self._guard("failed in draw_sprites", lambda: self.scene.draw_sprites(depth)),
+                           self.middle,
                            lambda: self._guard("failed in labels", lambda: checked_labels(self.scene.labels())),
                            turns=bool(self._guard("failed in turns_with_camera", self.scene.turns_with_camera)))
 
@@ -270,6 +277,7 @@ class Stage:
     def _exchange(self, scene_class: type[Scene], params: Parameters, frame: int) -> None:
         """Let a new scene, played to ``frame``, take the place of the present one, or if it fails none."""
         former, stood_at = self.scene, self.clock.frame
+        self._rewind.forget()
         self.scene = self._built(scene_class, params)
         try:
             self._go_to(0)
@@ -282,9 +290,25 @@ class Stage:
             raise
         former.gpu.release()
 
+    def _go_back(self, frame: int) -> None:
+        """Play to an earlier frame from the last moment before it that was kept, or from the beginning."""
+        kept = self._rewind.before(frame, self._steered_by())
+        if kept is None:
+            self._exchange(self.scene_class, self.params, frame)
+            return
+        moment, snapshot = kept
+        self._off_screen("failed in restore", lambda: self.scene.restore(snapshot))
+        self._go_to(moment)
+        self._play_to(frame)
+
     def _play_to(self, frame: int) -> None:
+        if self.scene.simulates and self.clock.frame == 0 < frame:
+            self._prepare()     # at the beginning it follows every change as if it had been built so
+            self._rewind.begin(self._steered_by())
+            self._remember()
         while self.scene.simulates and self.clock.frame < frame:
             self._simulate_one()
+            self._remember()
         self._go_to(frame)
 
     def _go_to(self, frame: int) -> None:
@@ -299,6 +323,16 @@ class Stage:
         except BaseException:
             self._go_to(before)     # a step that failed is one still to be made
             raise
+
+    def _remember(self) -> None:
+        """Keep this moment, if it is time and the scene can tell all about it."""
+        if self._rewind.is_due(self.clock.frame, self._steered_by()):
+            snapshot = self._off_screen("failed in snapshot", self.scene.snapshot)
+            if snapshot is not None:
+                self._rewind.keep(self.clock.frame, snapshot)
+
+    def _steered_by(self) -> Hashable:
+        return self._guard("failed in steered_by", self.scene.steered_by)
 
     def _prepare(self) -> None:
         self.scene.look(self.camera.view(), self.size[0] / self.size[1])

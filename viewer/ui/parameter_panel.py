@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from imgui_bundle import imgui
 
 from viewer.engine.fields import Field
-from viewer.engine.formula_field import FormulaField
 from viewer.engine.number_fields import FormulaSlider
 from viewer.ui import theme
 from viewer.ui.guard import one_line, show_failure
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from viewer.ui.workbench import Workbench
 
 LABEL_SHARE = 0.42
+FULL_WIDTH = "formula", "curve", "gradient"     # kinds that stand on a line of their own
 RESET_EMS = 1.5
 
 
@@ -103,29 +103,32 @@ class ParameterPanel:
 
     def _row(self, stage: Stage, field: Field[Any], width: float) -> None:
         value, reset = stage.params.get(field.name), RESET_EMS * imgui.get_font_size()
-        own_line = isinstance(field, FormulaField)
+        own_line = field.kind in FULL_WIDTH
         start = imgui.get_cursor_pos_x()
         beside = width if own_line else LABEL_SHARE * width
         resettable = field.name in self._changed or self._typed.wrong(field.name)
         self._label(stage, field, beside - (reset if resettable else 0.0) - 0.3 * imgui.get_font_size())
         if resettable:
             self._reset(stage, field, start + beside - reset)
-        if own_line:
-            self._typed.draw(field, value, width)
-            tooltip(lambda: self._explained(stage, field))
-            return
-        imgui.same_line(start + LABEL_SHARE * width)
-        room = (1.0 - LABEL_SHARE) * width
+        if not own_line:
+            imgui.same_line(start + LABEL_SHARE * width)
+        self._widget(stage, field, value, width if own_line else (1.0 - LABEL_SHARE) * width)
+        self._show_error(stage, field)
+
+    def _widget(self, stage: Stage, field: Field[Any], value: Any, room: float) -> None:
         if field.kind in WIDGETS:
             new = draw_value(stage.params.offered(field.name), value, room)
-            tooltip(lambda: self._explained(stage, field))
+            if field.kind not in FULL_WIDTH or not imgui.is_item_active():
+                tooltip(lambda: self._explained(stage, field))
             if new is not None:
                 self._set(stage, field, new)
+        elif field.kind in FULL_WIDTH:
+            self._typed.draw(field, value, room)
+            tooltip(lambda: self._explained(stage, field))
         else:
             imgui.begin_group()
             self._typed.draw(field, value, room)
             imgui.end_group()
-        self._show_error(stage, field)
 
     def _label(self, stage: Stage, field: Field[Any], width: float) -> None:
         key = field.name, round(width), imgui.get_font_size()

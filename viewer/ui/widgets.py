@@ -10,15 +10,19 @@ from imgui_bundle import imgui
 
 from viewer.engine.color_field import Color
 from viewer.engine.fields import Field
+from viewer.engine.life_fields import LifeCurveField
 from viewer.engine.number_fields import Integer, Interval, Number, Slider
 from viewer.engine.word_fields import Choice, Toggle
-from viewer.ui import theme
+from viewer.ui import curve_editor, gradient_editor, theme
+from viewer.ui.curve_editor import draw_curve
+from viewer.ui.gradient_editor import draw_gradient
 from viewer.ui.typography import tooltip
 
 DRAG_PIXELS = 300.0     # of mouse travel across the whole of an interval's range
 MOST_SEGMENTS = 4
 LOGARITHMIC = int(imgui.SliderFlags_.logarithmic)
 ALWAYS_CLAMP = int(imgui.SliderFlags_.always_clamp)
+GESTURES = {"curve": curve_editor.GESTURES, "gradient": gradient_editor.GESTURES}
 
 BAR_COLORS, IDLE_BAR_COLORS = [[imgui.color_convert_float4_to_u32(imgui.ImVec4(*color)) for color in colors]
                                for colors in ((theme.WELL, theme.ACCENT_DEEP, theme.ACCENT),
@@ -43,11 +47,13 @@ def number_format(field: Number[Any], digits: str) -> str:
 def explain(field: Field[Any]) -> str:
     """What a tooltip says of a parameter: help, range, default."""
     lines = [field.help]
-    if isinstance(field, Number):
+    if isinstance(field, (Number, LifeCurveField)):
         lines.append(f"{field.range_text} {field.unit}".rstrip())
     lines.append(f"Default: {field.text(field.default) or 'none'}")
     if isinstance(field, Number):
         lines.append("Drag an end" if isinstance(field, Interval) else "Ctrl+click to type a value")
+    if field.kind in GESTURES:
+        lines.append(GESTURES[field.kind])
     return "\n".join(lines)
 
 
@@ -73,7 +79,8 @@ def _interval(field: Interval, value: tuple[float, float], width: float) -> tupl
     flags = ALWAYS_CLAMP | (LOGARITHMIC if field.logarithmic else 0)
     low, high = field.widget_range
     changed, start, end = imgui.drag_float_range2(
-        "##value", *value, (high - low) / DRAG_PIXELS, low, high, number_format(field, "%.4g"), None, flags)
+        "##value", *value, (high - low) / DRAG_PIXELS, field.minimum, field.maximum, number_format(field, "%.4g"), None,
+        flags)
     return (_decimal(start), _decimal(end)) if changed else None
 
 
@@ -171,5 +178,5 @@ def _decimal(number: float) -> float:
 
 WIDGETS: dict[str, Callable[[Any, Any, float], Any]] = {
     "slider": _slider, "integer": _integer, "interval": _interval, "toggle": _toggle, "color": _color,
-    "choice": _choice,
+    "choice": _choice, "curve": draw_curve, "gradient": draw_gradient,
 }

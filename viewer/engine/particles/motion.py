@@ -1,0 +1,81 @@
+"""One step of all particles, or of those just born."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import moderngl
+
+from viewer.engine.field_samples import drawing_into
+from viewer.engine.gpu import Gpu
+from viewer.engine.particles.cascade import cascade_constants, has_children
+from viewer.engine.particles.colliders import Colliders
+from viewer.engine.particles.forces import Forces
+from viewer.engine.particles.pool import Pool
+from viewer.engine.program import Program, VertexArray
+
+COLLIDER_UNIT = 5
+
+
+class Motion:
+    """Draws ``step.frag`` over the slots in use; forces and colliders say what it has to reckon with."""
+
+    def __init__(self, gpu: Gpu, forces: Forces, colliders: Colliders, step_seconds: float) -> None:
+        self.gpu, self.forces, self.colliders, self.step_seconds = gpu, forces, colliders, step_seconds
+        self.params = forces.params
+        self.collider_constants: Mapping[str, Callable[[], str]] = {"generated/collider.glsl": colliders.constants}
+        self._all = self._program(newborn=False)
+        self._newborn = self._program(newborn=True)
+        self._step_all: VertexArray = gpu.vertex_array(self._all)
+        self._step_newborn: VertexArray = gpu.vertex_array(self._newborn)
+        self.seconds = 0.0      # scene time at the end of the step
+
+    def step(self, pool: Pool) -> None:
+        """Make the next state of every used slot in ``pool``, which then has to ``turn``."""
+        if not pool.rows:
+            return
+        self._set(self._all)
+        pool.bind(self._all)
+        self._render(self._step_all, pool.stepping, (pool.width, pool.rows))
+
+    def step_newborns(self, batch: Mapping[str, moderngl.Texture], target: moderngl.Framebuffer,
+                      size: tuple[int, int]) -> None:
+        """The same for a ``batch`` of textures by name, each for as much of the step as it has lived."""
+        self._set(self._newborn)
+        for unit, (name, texture) in enumerate(batch.items()):
+            texture.use(unit)
+            self._newborn[f"u_{name}"] = unit
+        self._render(self._step_newborn, target, size)
+
+    def _render(self, array: VertexArray, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+        self.colliders.bind(array.program, COLLIDER_UNIT)
+        with drawing_into(self.gpu, target, size):
+            array.render(vertices=3)
+
+    def _set(self, program: Program) -> None:
+        self.forces.apply(program, self.seconds - 0.5 * self.step_seconds)
+        program["u_step"] = self.step_seconds
+        program["u_thinnest"] = self.colliders.thinnest
+        program["u_common_mass"] = self.params.get("mass")[0]
+        program["u_common_drag"] = self.params.get("drag")[0]
+
+    def _program(self, *, newborn: bool) -> Program:
+        return self.gpu.program("studio/screen.vert", "particles/step.frag", generated={
+            "generated/forces.glsl": self.forces.constants, **self.collider_constants,
+            "generated/cascade.glsl": lambda: cascade_constants(self.params),  # type: ignore[arg-type]
+            "generated/step.glsl": lambda: self._constants(newborn)})
+
+    def _constants(self, newborn: bool) -> str:
+        """The include ``generated/step.glsl``."""
+        varied = any(low != high for low, high in (self.params.get("mass"), self.params.get("drag")))
+        flags = {"NEWBORN": newborn, "VARIED": varied, "CASCADES": has_children(self.params),  # type: ignore[arg-type]
+                 "MAY_PASS_THROUGH": self._may_pass_through()}
+        return "\n".join(f"const bool {name} = {str(value).lower()};" for name, value in flags.items()) + "\n"
+
+    def _may_pass_through(self) -> bool:
+        """Whether something could be so fast as to jump over the thinnest collider within a step."""
+        names = ("speed", "children_speed", "grandchildren_speed", "great_grandchildren_speed")
+        launch = sum(self.params.get(name)[1] for name in names)
+        life = max(self.params.get(name.replace("speed", "lifetime"))[1] for name in names)
+        fastest = launch + life * self.forces.greatest_acceleration()
+        return bool(fastest * self.step_seconds > self.colliders.thinnest)

@@ -1,0 +1,252 @@
+"""A particle system: what a scene steps, draws, measures and exports."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viewer.engine.clock import FRAME_SECONDS
+from viewer.engine.gpu import Gpu
+from viewer.engine.particles.births import Newborn, Nursery
+from viewer.engine.particles.cascade import FAMILIES, CascadeParameters, has_children
+from viewer.engine.particles.colliders import ColliderParameters, Colliders
+from viewer.engine.particles.emitter import Emitter
+from viewer.engine.particles.forces import ForceParameters, Forces
+from viewer.engine.particles.motion import Motion
+from viewer.engine.particles.pool import CHILDREN_SHIFT, DIED, LIVES, STRUCK, Pool, PoolSnapshot
+from viewer.engine.particles.qualities import EmissionParameters, QualityParameters
+from viewer.engine.particles.schedule import Births, Schedule
+from viewer.engine.rewind import Snapshot
+from viewer.engine.scene import Geometry
+
+
+class ParticleParameters(EmissionParameters, QualityParameters, ForceParameters, ColliderParameters,
+                         CascadeParameters):
+    """All that decides how particles move."""
+
+
+SHOWING = ("show_emitter", "obstacle_color", "spin", "hue", "brightness",
+           *(f"{family}_color" for family in FAMILIES))     # these change the picture alone
+STEERING = tuple(name for name in ParticleParameters.declared if name not in SHOWING)
+
+
+class Companion(Protocol):
+    """What remembers something of the particles from step to step, as trails do, and has to go back in time with them."""
+
+    bytes_per_particle: int
+
+    def begin(self) -> None:
+        """Nothing has happened yet."""
+
+    def follow(self) -> None:
+        """The system has made a step."""
+
+    def snapshot(self) -> Snapshot:
+        """All that is remembered."""
+
+    def restore(self, snapshot: Any) -> None:
+        """Remember again what was remembered then."""
+
+
+@dataclass
+class Tally:
+    """What has happened since the start. ``live`` holds the number of the living, frame by frame."""
+
+    emitted: int = 0
+    died: int = 0
+    collisions: int = 0
+    children: int = 0
+    refused: int = 0
+    live: list[int] = field(default_factory=lambda: [0])
+
+    def copy(self) -> Tally:
+        """The same numbers, apart."""
+        return Tally(self.emitted, self.died, self.collisions, self.children, self.refused, list(self.live))
+
+
+@dataclass(frozen=True)
+class SystemSnapshot:
+    """All that the future of a system follows from."""
+
+    pool: PoolSnapshot
+    schedule: tuple[float, float, int]
+    tally: Tally
+    born: int
+    steps: int
+    companions: tuple[Snapshot, ...]
+
+    @property
+    def nbytes(self) -> int:
+        """How much memory it takes, about."""
+        return self.pool.nbytes + 32 * len(self.tally.live) + sum(one.nbytes for one in self.companions)
+
+
+class ParticleSystem:
+    """Particles that live on the GPU. They do not feel each other: what each does follows from its birth alone.
+
+    ``companions`` follow each step. Where ``holds_still`` nobody moves or ages, as for hair, whose roots they are.
+    """
+
+    def __init__(self, gpu: Gpu, params: Any, bytes_beside: int = 0) -> None:
+        self.gpu, self.params = gpu, params
+        self.pool = Pool(gpu, params.count, bytes_beside)
+        self.emitter = Emitter(gpu, params)
+        self.colliders = Colliders(gpu, params)
+        self.forces = Forces(params)
+        self.motion = Motion(gpu, self.forces, self.colliders, FRAME_SECONDS)
+        self.schedule, self.tally, self.steps = Schedule(params), Tally(), 0
+        self.prepare()
+        self.nursery = Nursery(gpu, self.pool, self.motion, self.emitter, params.seed)
+        self.companions: list[Companion] = []
+        self.holds_still = False
+        self.step_ms = 0.0
+        self._key: tuple[int, tuple[object, ...]] = -1, ()
+        self._warm_steps: int = round(params.warm_up / FRAME_SECONDS)
+        self._begun_with: Hashable = None
+
+    @property
+    def seconds(self) -> float:
+        """Scene time at the end of the last step."""
+        return (self.steps - self._warm_steps) * FRAME_SECONDS
+
+    def prepare(self) -> None:
+        """Follow the parameters; raises a DemoscopeError where a file or a formula is at fault."""
+        self.emitter.prepare()
+        self.colliders.prepare()
+
+    def steered_by(self) -> Hashable:
+        """The values of all parameters that decide how particles move."""
+        if self.params.revision != self._key[0]:
+            values = tuple(str(self.params.field(name).stored(self.params.get(name))) for name in STEERING)
+            self._key = self.params.revision, (*values, tuple(self.params.numbers(self.params.obstacle_formula).items()))
+        return self._key[1]
+
+    def begin(self) -> None:
+        """Stand at the beginning, as the parameters now are: the first burst, and what warming up brings.
+
+        A scene calls it once its companions are there, and again whenever it stands ``at_beginning``; it does
+        nothing where the parameters that count have not changed since.
+        """
+        key = self.steered_by()
+        if key == self._begun_with:
+            return
+        self.pool.clear()
+        self.schedule, self.tally, self.steps, self.nursery.born = Schedule(self.params), Tally(), 0, 0
+        self.motion.seconds = self.seconds
+        for companion in self.companions:
+            companion.begin()
+        for some in self._bear(np.empty(0, np.uint32), self.schedule.first()):
+            self.pool.alive[some.slots] = some.alive
+        for _ in range(self._warm_steps):
+            self.update()
+        self.tally.live = [self.pool.alive_count]
+        self._begun_with = key
+
+    @property
+    def at_beginning(self) -> bool:
+        """Whether nothing has moved since frame 0."""
+        return self.steps == self._warm_steps
+
+    def update(self) -> None:
+        """Go on by one frame."""
+        started = time.perf_counter()
+        self.prepare()
+        self.steps += 1
+        self.motion.seconds = self.seconds
+        status = self._stepped()
+        before, lives = len(status), (status & LIVES).astype(bool)
+        self.tally.died += int(np.count_nonzero(status & DIED))
+        self.tally.collisions += int(np.count_nonzero(status & STRUCK))
+        newborn = self._bear(self._broods(None, status), self._due())
+        self.pool.alive[:before] = lives        # only now are the slots of the dead free
+        for some in newborn:
+            self.pool.alive[some.slots] = some.alive
+        self.tally.live.append(self.pool.alive_count)
+        for companion in self.companions:
+            companion.follow()
+        self.step_ms = 1e3 * (time.perf_counter() - started)
+
+    def snapshot(self) -> SystemSnapshot:
+        """All that the future follows from, to be put back by ``restore``."""
+        return SystemSnapshot(self.pool.snapshot(), self.schedule.state(), self.tally.copy(), self.nursery.born,
+                              self.steps, tuple(companion.snapshot() for companion in self.companions))
+
+    def restore(self, snapshot: SystemSnapshot) -> None:
+        """Go back to a moment."""
+        self.pool.restore(snapshot.pool)
+        self.schedule.restore(snapshot.schedule)
+        self.tally, self.nursery.born, self.steps = snapshot.tally.copy(), snapshot.born, snapshot.steps
+        for companion, kept in zip(self.companions, snapshot.companions, strict=True):
+            companion.restore(kept)
+
+    def arrays(self) -> Geometry:
+        """The living, in the order of their slots: position and velocity (n, 3), the rest (n,)."""
+        alive = np.flatnonzero(self.pool.alive[:self.pool.used])
+        texels = {name: rows[alive] for name, rows in self.pool.read("motion", "velocity", "nature", "launch").items()}
+        motion, nature = texels["motion"], texels["nature"]
+        return {
+            "position": motion[:, :3].copy(), "velocity": texels["velocity"][:, :3].copy(),
+            "age": nature[:, 0] - motion[:, 3], "life": nature[:, 0].copy(), "size": nature[:, 1].copy(),
+            "mass": nature[:, 2].copy(), "generation": texels["launch"][:, 3].astype(np.int32),
+            "seed": self.pool.serial[alive]}
+
+    def energies(self, arrays: Geometry) -> tuple[float, float, float]:
+        """Kinetic and potential energy in joules, and the greatest speed in m/s, of ``arrays``."""
+        velocity, mass = arrays["velocity"].astype(np.float64), arrays["mass"].astype(np.float64)
+        squared = (velocity**2).sum(axis=1)
+        potential = self.forces.potential_energy(arrays["position"].astype(np.float64), mass)
+        return float(0.5 * mass @ squared), float(potential.sum()), float(np.sqrt(squared.max(initial=0.0)))
+
+    def _stepped(self) -> NDArray[np.uint16]:
+        """The status of each slot after everyone has moved on."""
+        if self.holds_still:
+            return self.pool.alive[:self.pool.used].astype(np.uint16) * LIVES
+        self.motion.step(self.pool)
+        return self.pool.turn() if self.pool.used else np.empty(0, np.uint16)
+
+    def _due(self) -> list[Births]:
+        births = self.schedule.due(FRAME_SECONDS)
+        return [Births(due.number, 0.0) for due in births] if self.holds_still else births
+
+    def _bear(self, parents: NDArray[np.uint32], births: list[Births]) -> list[Newborn]:
+        """Everyone who is born in a step: children and theirs, then those from the emitter and theirs."""
+        newborn = list(self._children(parents))
+        for due in births:
+            emitted = 0
+            for some in self.nursery.from_emitter(due, self._wave_reach()):
+                emitted += len(some.slots)
+                newborn.append(some)
+                newborn.extend(self._children(self._broods(some.slots, some.status)))
+            self.tally.emitted += emitted
+            self.tally.refused += due.number - emitted
+        for some in newborn:
+            self.tally.died += len(some.slots) - int(np.count_nonzero(some.alive))
+            self.tally.collisions += int(np.count_nonzero(some.status & STRUCK))
+        return newborn
+
+    def _children(self, parents: NDArray[np.uint32]) -> Iterator[Newborn]:
+        """A child for each slot in ``parents``, and what comes from those before the step is over."""
+        borne = 0
+        for some in self.nursery.from_parents(parents):
+            borne += len(some.slots)
+            yield some
+            yield from self._children(self._broods(some.slots, some.status))
+        self.tally.children += borne
+        self.tally.refused += len(parents) - borne
+
+    def _wave_reach(self) -> float:
+        """How far the emitting wave has come, in metres; -1 where there is none."""
+        return float(self.params.wave_speed * self.schedule.seconds) if self.params.rides_wave else -1.0
+
+    def _broods(self, slots: NDArray[np.uint32] | None, status: NDArray[np.uint16]) -> NDArray[np.uint32]:
+        """The slot of a parent for each child that is due, by ``status``."""
+        if not has_children(self.params):
+            return np.empty(0, np.uint32)
+        brooding = np.flatnonzero(status >> CHILDREN_SHIFT)
+        who = brooding if slots is None else slots[brooding]
+        return np.repeat(who, status[brooding] >> CHILDREN_SHIFT).astype(np.uint32)
