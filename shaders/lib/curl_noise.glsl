@@ -8,7 +8,7 @@
 #include "lib/noise.glsl"
 
 const vec3 CURL_NOISE_APART = vec3(31.416, -47.853, 12.793);
-const float CURL_NOISE_SCALE = 1.66;
+const float CURL_NOISE_SCALE = 0.814;
 
 vec3 curl_noise(vec3 p) {
     return CURL_NOISE_SCALE * cross(perlin_noise_gradient(p).xyz, perlin_noise_gradient(p + CURL_NOISE_APART).xyz);

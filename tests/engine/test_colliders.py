@@ -159,13 +159,13 @@ def test_distance_changes_by_no_more_than_the_way(probe: Probe, values: dict[str
 def test_mesh_from_a_file_is_where_its_sphere_is(probe: Probe, tmp_path: Path) -> None:
     vertices, triangles = mesh.ico_sphere(4)
     path = write_obj(tmp_path / "ball.obj", vertices, triangles)
-    p = places(width=1.6)
+    p = np.concatenate([places(width=1.6), CENTER + 0.5 * places(width=1.3)])
     distance, normal = probe(p, obstacle="mesh", obstacle_file=path, obstacle_scale=0.5, **PLACE, **NO_GROUND)
     away = p - CENTER
     expected = np.linalg.norm(away, axis=1) - 0.5
     cell = 0.5 * 2.0 / 59
     near = np.abs(expected) < 2 * cell
-    assert near.sum() > 50
+    assert near.sum() > 200
     np.testing.assert_allclose(distance[near], expected[near], atol=0.2 * cell)
     assert ((distance < 0) == (expected < 0))[np.abs(expected) > 0.1 * cell].all()
     cosine = np.einsum("ij,ij->i", normal, away) / np.linalg.norm(away, axis=1)
@@ -234,6 +234,18 @@ def test_thinnest_tells_what_a_fast_particle_might_jump_over(gpu: Gpu) -> None:
     assert thinnest(obstacle="formula", obstacle_detail=44) == pytest.approx(2.0 / 40)
 
 
+def test_ground_to_draw_lies_where_its_distance_is_zero(gpu: Gpu, probe: Probe) -> None:
+    values = {"ground_tilt": -30, "ground_height": 0.7}
+    colliders = Colliders(gpu, ColliderParameters(values))
+    vertices, normals, triangles = colliders.ground_surface(5.0)
+    distance, normal = probe(vertices.astype("f8"), **values)
+    np.testing.assert_allclose(distance, 0.0, atol=2e-6)
+    np.testing.assert_allclose(normals, normal, atol=1e-6)
+    assert np.linalg.norm(vertices - [0.0, 0.7, 0.0], axis=1).max() == pytest.approx(5.0)
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), normals[triangles[:, 0]]) > 0.0).all()
+
+
 def test_volume_beyond_the_limit_is_refused(gpu: Gpu) -> None:
     with pytest.raises(GpuError, match="volume of 100000x2x2"):
         gpu.volume((100_000, 2, 2), 1)
@@ -247,7 +259,8 @@ def test_solid_makes_room_for_a_larger_mesh(gpu: Gpu) -> None:
         vertices, triangles = mesh.ico_sphere(level)
         solid.show((vertices, vertices, triangles))
         solid.draw((0.5, 0.5, 0.5))
-        solid.draw_glass((0.5, 0.5, 0.5), far_side=True, near_side=True)
+        solid.draw_glass((0.5, 0.5, 0.5))
+        solid.draw_near_glass((0.5, 0.5, 0.5))
     solid.show(None)
     solid.draw((0.5, 0.5, 0.5))
     assert target.depth_mask

@@ -85,6 +85,10 @@ class Integer(Number[int]):
 
     kind = "integer"
 
+    @property
+    def range_text(self) -> str:
+        return f"{int(self.minimum)} to {int(self.maximum)}"
+
     def parse(self, value: object) -> int:
         number = self.number(value, value)
         if number != round(number):

@@ -116,7 +116,7 @@ def _pectoral(sign: float, rays: int) -> Mesh:
 
 
 def _pelvic(sign: float, rays: int) -> Mesh:
-    root = _mirrored([(0.095, -0.115, 0.022), (0.075, -0.117, 0.023), (0.055, -0.117, 0.024)], sign)
+    root = _mirrored([(0.095, -0.104, 0.022), (0.075, -0.106, 0.023), (0.055, -0.106, 0.024)], sign)
     tip = _mirrored([(0.025, -0.188, 0.058), (-0.002, -0.172, 0.056), (-0.012, -0.148, 0.046)], sign)
     return _fin(root, _between(root, tip, (0.01, -0.006, 0.004 * sign)), tip, rays // 2)
 

@@ -75,9 +75,10 @@ def _explained(path: Path) -> Iterator[None]:
         yield
     except MeshFileError:
         raise
-    except OSError as error:
-        raise MeshFileError(f"mesh {path} cannot be read: {error.strerror or error}") from error
     except Exception as error:      # the formats' readers raise whatever their parsing runs into
+        if isinstance(error, OSError) and error.strerror:
+            beside = f"{error.filename}: " if error.filename and Path(error.filename) != path else ""
+            raise MeshFileError(f"mesh {path} cannot be read: {beside}{error.strerror}") from error
         reason = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
         raise MeshFileError(f"mesh {path} is damaged or no mesh ({reason})") from error
     finally:
@@ -89,16 +90,15 @@ def _parts(path: Path) -> Iterator[FileMesh]:
     import trimesh
 
     scene = trimesh.load_scene(str(path), process=False, skip_materials=True)
-    held: set[str] = set()
+    found: list[bool] = []
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         part = scene.geometry[name]
-        held.add("triangles" if isinstance(part, trimesh.Trimesh) else
-                 "points" if isinstance(part, trimesh.PointCloud) else "lines")
+        found.append(isinstance(part, trimesh.Trimesh))
         if isinstance(part, trimesh.Trimesh) and len(part.faces):
             yield _placed(path, part, np.asarray(transform, np.float64))
-    if held and "triangles" not in held:
-        raise MeshFileError(f"mesh {path} holds {' and '.join(sorted(held))}; triangles are needed")
+    if found and not any(found):
+        raise MeshFileError(f"mesh {path} holds only points or lines; triangles are needed")
 
 
 def _placed(path: Path, part: trimesh.Trimesh, transform: Vertices) -> FileMesh:

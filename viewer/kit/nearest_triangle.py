@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 Points = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-MOST_PIECES = 4_000_000
+MOST_PIECES = 1_000_000         # more only where there are as many triangles
 FIRST_LOOK, MOST_LOOKED_AT = 8, 512
+MOST_PAIRS = 4_000_000          # of a point and a triangle to compare in one round: seconds
 PAIRS_AT_ONCE = 1 << 17         # as many as stay in the processor's cache
 FACE = 6
 
@@ -33,7 +34,8 @@ class Nearest(NamedTuple):
 class NearestTriangle:
     """Looks up the triangles ``corners`` (m, 3, 3), cut into pieces no longer than ``piece``.
 
-    ``search`` may find a triangle that is further than the nearest, by ``tolerance`` at most.
+    ``search`` may find a triangle that is further than the nearest, by ``tolerance`` at most; by a piece in a thicket
+    of triangles where comparing more would take too long.
     """
 
     def __init__(self, corners: Points, piece: float, tolerance: float) -> None:
@@ -52,9 +54,10 @@ class NearestTriangle:
             block = max(1, PAIRS_AT_ONCE // looked_at)
             parts = [open_points[start:start + block] for start in range(0, len(open_points), block)]
             open_points = np.concatenate([self._look(points, part, looked_at, within, chosen) for part in parts])
-            if looked_at >= min(MOST_LOOKED_AT, self._tree.n):
+            more = min(4 * looked_at, self._tree.n)
+            if looked_at in (MOST_LOOKED_AT, more) or len(open_points) * more > MOST_PAIRS:
                 break
-            looked_at = min(4 * looked_at, self._tree.n)
+            looked_at = more
         return self.on(points, chosen)
 
     def on(self, points: Points, chosen: Indices) -> Nearest:
@@ -153,6 +156,6 @@ def _affordable(lengths: Points, longest: float) -> float:
     """``longest``, or more where that would make more pieces than memory is for."""
     perimeter = lengths.sum(axis=1)
     area = 0.05 * np.square(perimeter).sum()    # no triangle has more
-    while 5.0 * area / longest**2 + perimeter.sum() / longest > MOST_PIECES + 4 * len(lengths):
+    while 5.0 * area / longest**2 + perimeter.sum() / longest > MOST_PIECES + 2 * len(lengths):
         longest *= 1.5
     return longest

@@ -51,8 +51,8 @@ class ColliderParameters(Parameters):
                                   when="obstacle=box|torus|mesh|formula")
     obstacle_lean: float = slider(0.0, -180.0, 180.0, "Lean about the z axis, before the turn", unit="degrees",
                                   group=GROUP, when="obstacle=box|torus|mesh|formula")
-    obstacle_file = file(None, "A triangle mesh", suffixes=SUFFIXES, rebuild=False, group=GROUP,
-                         when="obstacle=mesh")
+    obstacle_file = file(None, "A triangle mesh for the obstacle: name it, then choose obstacle = mesh",
+                         suffixes=SUFFIXES, rebuild=False, group=GROUP)
     obstacle_formula = formula("length(x, y, z) - 0.5 - 0.1*sin(8*x)*sin(8*y)*sin(8*z)",
                                "A function that is below 0 inside the obstacle", variables=("x", "y", "z"),
                                group=GROUP, when="obstacle=formula")
@@ -79,7 +79,6 @@ class Colliders:
         self._sampled: Sampled | None = None
         self._sampled_of: object = None
         self._texture: moderngl.Texture3D | None = None
-        self._textured: Sampled | None = None
         self._shape: tuple[object, ...] = ()
         self._surface: ShadedMesh | None = None
 
@@ -109,22 +108,31 @@ class Colliders:
     def bind(self, program: Program, first_unit: int) -> None:
         """Give ``program`` the uniforms of ``particles/collider.glsl``, and one texture unit."""
         p = self.params
-        tilt = math.radians(p.ground_tilt)
-        program["u_collider_plane"] = -math.sin(tilt), math.cos(tilt), 0.0, p.ground_height * math.cos(tilt)
+        program["u_collider_plane"] = self._plane()
         program["u_collider_center"] = p.obstacle_x, p.obstacle_y, p.obstacle_z
         program["u_collider_turn"] = tuple(self._turn().ravel().tolist())   # GL reads columns: the transpose
         program["u_collider_size"] = self._size()
         program["u_distance_field"] = first_unit
-        if p.obstacle in ("mesh", "formula") and self._sampled:
+        if p.obstacle in ("mesh", "formula") and self._sampled and self._texture:
             field = self._sampled.field
             program["u_field_origin"] = tuple(field.origin.tolist())
             program["u_field_extent"] = tuple(field.extent.tolist())
             program["u_field_cell"] = field.cell
-            self._field_texture().use(first_unit)
+            self._texture.use(first_unit)
 
     def surface(self) -> ShadedMesh | None:
         """The obstacle in the world: vertices (v, 3), normals (v, 3), both float32, and triangles (t, 3) int32."""
         return self._surface
+
+    def ground_surface(self, radius: float) -> ShadedMesh:
+        """A round piece of the ground in the world, around the height that it has at the origin; as ``surface``."""
+        from viewer.kit.shapes import disc
+
+        vertices, triangles = disc(radius)
+        nx, ny = self._plane()[:2]
+        tilted = vertices @ np.array([[ny, -nx, 0.0], [nx, ny, 0.0], [0.0, 0.0, 1.0]])
+        normals = np.tile(np.array([nx, ny, 0.0], np.float32), (len(vertices), 1))
+        return (tilted + np.array([0.0, self.params.ground_height, 0.0])).astype(np.float32), normals, triangles
 
     @property
     def thinnest(self) -> float:
@@ -136,6 +144,11 @@ class Colliders:
         if p.obstacle in ("mesh", "formula"):
             return self._sampled.field.cell * size[0] if self._sampled else 1e9
         return 2.0 * {"sphere": size[0], "box": min(size), "torus": size[1]}[p.obstacle]
+
+    def _plane(self) -> tuple[float, float, float, float]:
+        """The ground's normal, and that times a place on it."""
+        tilt = math.radians(self.params.ground_tilt)
+        return -math.sin(tilt), math.cos(tilt), 0.0, self.params.ground_height * math.cos(tilt)
 
     def _size(self) -> tuple[float, float, float]:
         p = self.params
@@ -197,20 +210,18 @@ class Colliders:
         if wanted == self._sampled_of:
             return
         if p.obstacle == "mesh":
-            self._sampled = sampled_mesh(p.obstacle_file, p.obstacle_detail)
+            sampled = sampled_mesh(p.obstacle_file, p.obstacle_detail)
         else:
-            self._sampled = sampled_formula(function, p.obstacle_reach, p.obstacle_detail)
-        self._sampled_of = wanted
+            sampled = sampled_formula(function, p.obstacle_reach, p.obstacle_detail)
+        self._send(sampled)
+        self._sampled, self._sampled_of = sampled, wanted
 
-    def _field_texture(self) -> moderngl.Texture3D:
-        """The field on the GPU."""
-        sampled = self._sampled
-        assert sampled
-        if self._textured is not sampled:
-            values = sampled.field.stepping_values
-            texture = self.gpu.volume(values.shape, 1, values.T, label="distance field")
-            if self._texture:
-                self.gpu.discard(self._texture)
-            self._texture, self._textured = texture, sampled
-        assert self._texture
-        return self._texture
+    def _send(self, sampled: Sampled) -> None:
+        """Put a distance field on the GPU in place of the former one."""
+        values = sampled.field.stepping_values
+        texture = self.gpu.volume(values.shape, 1, values.T, label="distance field")
+        if self._texture:
+            drawn_into = self.gpu.context.fbo
+            self.gpu.discard(self._texture)
+            drawn_into.use()
+        self._texture = texture

@@ -19,7 +19,7 @@ from viewer.kit import mesh, shapes
 from viewer.kit.fish import fish_mesh
 from viewer.kit.interior_points import volume_table
 from viewer.kit.mesh_file import SUFFIXES, FileMesh, MeshFileError, read_mesh
-from viewer.kit.surface_sampling import SamplingTable, edge_table, faces_inward, is_closed, surface_table
+from viewer.kit.surface_sampling import SamplingTable, edge_table, faces_inward, is_closed, surface_table, welded
 
 TABLE_WIDTH = 4096              # texels in a row of a table
 GROUP = "Emitter"
@@ -152,8 +152,9 @@ class Emitter:
         images = [_rows(array) for array in table]
         for image in images:
             self.gpu.check_size((image.shape[1], image.shape[0]), f"{self._name} as an emitter, in a texture")
-        self.gpu.discard(*self._textures)
-        self._textures = []
+        if self._textures:
+            self.gpu.discard(*self._textures)
+            self._textures = []
         for image, label in zip(images, ("emitter places", "emitter normals"), strict=True):
             size = (image.shape[1], image.shape[0])
             self._textures.append(self.gpu.texture(size, image.shape[2], image, dtype="f4", label=label))
@@ -173,7 +174,7 @@ class Emitter:
             found = self._mesh()
             if found.normals is not None:
                 return found.vertices, found.normals, found.triangles
-            return shapes.creased(found.vertices, found.triangles)
+            return shapes.creased(found.vertices, welded(found.vertices, found.triangles))
         if self.params.emitter == "sphere":
             directions, triangles = mesh.ico_sphere(5)
             return size * directions, directions, triangles

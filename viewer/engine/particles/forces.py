@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from viewer.engine.declarations import choice, slider
 from viewer.engine.params import Parameters
 from viewer.engine.program import Program
+from viewer.kit.curl_noise import curl_noise
 
 ATTRACTORS = {
     "none": "Nothing attracts", "point": "Towards a point, as gravity towards a planet: the inverse square",
@@ -94,6 +95,34 @@ class Forces:
         """Where the attractor and the vortex are, (3,), in metres."""
         return np.array([self.params.attractor_x, self.params.attractor_y, self.params.attractor_z])
 
+    def on_particle(self, place: NDArray[np.float64], velocity: NDArray[np.float64], mass: float, drag: float,
+                    seconds: float) -> dict[str, NDArray[np.float64]]:
+        """Each force on one particle by name, (3,) in newtons, as the step shader reckons them."""
+        params, forces = self.params, {"gravity": np.array([0.0, -self.params.gravity * mass, 0.0])}
+        away = place - self.attractor_place
+        core = params.attractor_core**2
+        if params.attractor == "point":
+            forces["attraction"] = -params.attraction * mass * away / (away @ away + core)**1.5
+        if params.attractor == "line":
+            across = away * [1.0, 0.0, 1.0]
+            forces["attraction"] = -params.attraction * mass * across / (across @ across + core)
+        if params.vortex:
+            around = np.array([away[2], 0.0, -away[0]])
+            forces["vortex"] = 2.0 * params.vortex * params.attractor_core * mass * around / (around @ around + core)
+        if params.turbulence:
+            drift = params.turbulence_pace * seconds * np.array([0.31, 0.83, -0.46])
+            forces["turbulence"] = params.turbulence * curl_noise([place / params.turbulence_size + drift])[0]
+        if drag:
+            forces["air"] = drag * (self._air_velocity(place, seconds) - velocity)
+        return forces
+
+    def _air_velocity(self, place: NDArray[np.float64], seconds: float) -> NDArray[np.float64]:
+        """Wind with its gusts, as ``gust`` in particles/forces.glsl has it."""
+        wind, speed = self.wind_velocity, self.params.wind
+        along = place @ wind / max(speed, 1e-6) - speed * seconds
+        waves = 0.6 * math.sin(1.1 * along + 0.7 * place[2]) + 0.4 * math.sin(2.7 * along - 1.3 * place[0] + 1.9)
+        return np.asarray(wind * (1.0 + self.params.gusts * waves))
+
     def potential_energy(self, place: NDArray[np.float64], mass: NDArray[np.float64]) -> NDArray[np.float64]:
         """Of gravity, counted from y = 0, and of the attractor, counted from afar or from one metre: (n,) in joules."""
         params = self.params
@@ -113,6 +142,6 @@ class Forces:
         params = self.params
         core = params.attractor_core
         pull = {"none": 0.0, "point": 0.385 / core**2, "line": 0.5 / core}[params.attractor] * abs(params.attraction)
-        rough = 4.0 * params.turbulence / params.get("mass")[0]
+        rough = 5.0 * params.turbulence / params.get("mass")[0]
         blown = params.get("drag")[1] / params.get("mass")[0] * params.wind * (1.0 + params.gusts)
         return float(abs(params.gravity) + pull + abs(params.vortex) + rough + blown)

@@ -11,10 +11,12 @@ from viewer.engine.fields import ParameterError
 from viewer.engine.particles.solid import ShadedMesh
 from viewer.errors import DemoscopeError
 from viewer.kit.field_function import FieldFunction
+from viewer.kit.mesh import normalized
 
 if TYPE_CHECKING:       # what these modules import takes longer than a window may wait
     from viewer.kit.distance_field import DistanceField
 
+MOST_CREASED = 300_000     # triangles; finding creases among more takes longer than one may wait
 SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
 
 
@@ -29,8 +31,8 @@ def sampled_mesh(path: Path, samples: int) -> Sampled:
     """The obstacle in a file; raises ParameterError for a mesh that cannot be one."""
     from viewer.kit.distance_field import mesh_distance_field
     from viewer.kit.mesh_file import read_mesh
-    from viewer.kit.pseudonormal import welded
-    from viewer.kit.shapes import creased
+    from viewer.kit.pseudonormal import vertex_normals, welded
+    from viewer.kit.shapes import creased, face_normals
 
     try:
         found = read_mesh(path)
@@ -39,7 +41,10 @@ def sampled_mesh(path: Path, samples: int) -> Sampled:
         raise ParameterError(f"obstacle_file = {path.name}: {error}") from error
     if found.normals is not None and found.normals.any(axis=1).all():
         return Sampled(field, (found.vertices, found.normals, found.triangles))
-    return Sampled(field, creased(*welded(found.vertices, found.triangles)))
+    places, faces = welded(found.vertices, found.triangles)
+    if len(faces) <= MOST_CREASED:
+        return Sampled(field, creased(places, faces))
+    return Sampled(field, (places, normalized(vertex_normals(places, faces, face_normals(places, faces))), faces))
 
 
 def sampled_formula(function: FieldFunction, reach: float, samples: int) -> Sampled:

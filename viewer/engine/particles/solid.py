@@ -50,24 +50,40 @@ class Solid:
             self._program["u_roughness"] = self.roughness
             self._arrays[0].render(vertices=self._count)
 
-    def draw_glass(self, color: tuple[float, float, float], *, far_side: bool, near_side: bool) -> None:
-        """Draw it as a thin glass, over what is there; the far side before what is inside, the near one after."""
-        if not self._count or self.gpu.casting_shadows:
+    def draw_glass(self, color: tuple[float, float, float]) -> None:
+        """Draw it as thin glass, in ``Scene.draw_over``, where nothing translucent is inside it."""
+        self.draw_far_glass(color)
+        self._blended(color, "back")
+
+    def draw_far_glass(self, color: tuple[float, float, float]) -> None:
+        """Draw the glass behind what is inside, in ``Scene.draw_over``."""
+        self._blended(color, "front")
+
+    def draw_near_glass(self, color: tuple[float, float, float]) -> None:
+        """Draw the glass before what is inside, in ``Scene.draw_sprites`` after that, blended as is set up there."""
+        self._draw_glass(color, "back")
+
+    def _blended(self, color: tuple[float, float, float], culled: str) -> None:
+        context = self.gpu.context
+        drawn_into = context.fbo
+        context.enable(moderngl.BLEND)
+        context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        drawn_into.depth_mask = False
+        self._draw_glass(color, culled)
+        drawn_into.depth_mask = True
+        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        context.disable(moderngl.BLEND)
+
+    def _draw_glass(self, color: tuple[float, float, float], culled: str) -> None:
+        if not self._count:
             return
         context = self.gpu.context
         self._glass["u_color"] = tuple(map(linear_light, color))
-        context.enable(moderngl.BLEND | moderngl.CULL_FACE)
-        context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        drawn_into = context.fbo
-        drawn_into.depth_mask = False
-        for wanted, culled in ((far_side, "front"), (near_side, "back")):
-            if wanted:
-                context.cull_face = culled
-                self._arrays[1].render(vertices=self._count)
-        drawn_into.depth_mask = True
+        context.enable(moderngl.CULL_FACE)
+        context.cull_face = culled
+        self._arrays[1].render(vertices=self._count)
         context.cull_face = "back"
-        context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        context.disable(moderngl.BLEND | moderngl.CULL_FACE)
+        context.disable(moderngl.CULL_FACE)
 
     def _make_room(self, needed: list[int]) -> None:
         """Larger buffers, a quarter more than needed, and vertex arrays with them."""
@@ -76,5 +92,7 @@ class Solid:
         buffers = [self.gpu.buffer(reserve=size, label=name) for size, name in zip(self._sizes, names, strict=True)]
         content = [(buffers[0], "3f", "in_position"), (buffers[1], "3f", "in_normal")]
         arrays = [self.gpu.vertex_array(program, content, buffers[2]) for program in (self._program, self._glass)]
+        drawn_into = self.gpu.context.fbo
         self.gpu.discard(*self._arrays, *self._buffers)
+        drawn_into.use()
         self._buffers, self._arrays = buffers, arrays

@@ -36,7 +36,7 @@ STEERING = tuple(name for name in ParticleParameters.declared if name not in SHO
 
 
 class Companion(Protocol):
-    """What remembers something of the particles from step to step, as trails do, and has to go back in time with them."""
+    """What remembers something of the particles from step to step, as trails do, and goes back in time with them."""
 
     bytes_per_particle: int
 
@@ -123,7 +123,8 @@ class ParticleSystem:
         """The values of all parameters that decide how particles move."""
         if self.params.revision != self._key[0]:
             values = tuple(str(self.params.field(name).stored(self.params.get(name))) for name in STEERING)
-            self._key = self.params.revision, (*values, tuple(self.params.numbers(self.params.obstacle_formula).items()))
+            numbers = self.params.numbers(self.params.obstacle_formula)
+            self._key = self.params.revision, (*values, *numbers.items())
         return self._key[1]
 
     def begin(self) -> None:
