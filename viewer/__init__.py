@@ -31,6 +31,14 @@ if TYPE_CHECKING:
     from viewer.engine.gpu import Gpu
     from viewer.engine.isosurface import Isosurface
     from viewer.engine.params import Parameters
+    from viewer.engine.particles.draw_timer import DrawTimer
+    from viewer.engine.particles.inspector import InspectParameters, ParticleInspector
+    from viewer.engine.particles.look import LookParameters
+    from viewer.engine.particles.solid import Solid
+    from viewer.engine.particles.sprites import Sprites
+    from viewer.engine.particles.strands import Strands
+    from viewer.engine.particles.system import ParticleParameters, ParticleSystem
+    from viewer.engine.particles.trails import TrailParameters, Trails, trail_bytes
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.stage import Stage
     from viewer.engine.vertex_textures import Wanted
@@ -45,20 +53,31 @@ __all__ = [
     "ColorScale",
     "Curve",
     "DemoscopeError",
+    "DrawTimer",
     "FieldSamples",
     "Geometry",
     "Gpu",
+    "InspectParameters",
     "Isosurface",
     "Label",
     "Lattice",
+    "LookParameters",
     "Measurements",
     "Orbit",
     "ParameterError",
     "Parameters",
+    "ParticleInspector",
+    "ParticleParameters",
+    "ParticleSystem",
     "Scene",
+    "Solid",
+    "Sprites",
     "Stage",
+    "Strands",
     "Studio",
     "Table",
+    "TrailParameters",
+    "Trails",
     "Wanted",
     "choice",
     "color",
@@ -75,13 +94,16 @@ __all__ = [
     "slider",
     "text",
     "toggle",
+    "trail_bytes",
 ]
 
 # Where they live, the first that has a name being its home.
 _HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
           "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.vertex_textures",
           "engine.isosurface", "engine.cell_inspector",
-          "engine.scene", "engine.stage", "output.headless")
+          "engine.scene", "engine.stage", "output.headless",
+          *(f"engine.particles.{noun}" for noun in ("system", "look", "sprites", "solid", "inspector", "draw_timer",
+                                                    "trails", "strands")))
 
 
 def __getattr__(name: str) -> Any:

@@ -79,8 +79,14 @@ vec3 field_normal(vec3 p) {
     return direction_of(slope, UP);
 }
 
+// From the obstacle's middle in its own directions; a sphere has none.
+vec3 in_obstacle(vec3 p) {
+    vec3 away = p - u_collider_center;
+    return OBSTACLE == OBSTACLE_SPHERE ? away : u_collider_turn * away;
+}
+
 float obstacle_distance(vec3 p) {
-    vec3 local = u_collider_turn * (p - u_collider_center);
+    vec3 local = in_obstacle(p);
     float found = NOTHING_NEAR;
     if (OBSTACLE == OBSTACLE_SPHERE)
         found = length(local) - u_collider_size.x;
@@ -94,7 +100,7 @@ float obstacle_distance(vec3 p) {
 }
 
 vec3 obstacle_normal(vec3 p) {
-    vec3 local = u_collider_turn * (p - u_collider_center);
+    vec3 local = in_obstacle(p);
     vec3 found = UP;
     if (OBSTACLE == OBSTACLE_SPHERE)
         found = direction_of(local, UP);
@@ -104,7 +110,8 @@ vec3 obstacle_normal(vec3 p) {
         found = torus_normal(local, u_collider_size.x);
     if (OBSTACLE == OBSTACLE_FIELD)
         found = field_normal(local / u_collider_size.x);
-    found = found * u_collider_turn;        // its transpose turns back
+    if (OBSTACLE != OBSTACLE_SPHERE)
+        found = found * u_collider_turn;    // its transpose turns back
     return HOLLOW ? -found : found;
 }
 

@@ -25,11 +25,11 @@ struct Impact {
 // times outside and inside. Safe strides as in sphere tracing (Hart 1996), but never shorter than half its thickness.
 vec2 entered(vec3 p, vec3 v, vec3 b, float duration) {
     float speed = length(v) + 2.0 * duration * length(b) + 1e-9;
-    float outside = 0.0;
+    float outside = 0.0, clear = collider_distance(p);
     for (int probe = 0; probe < MOST_PROBES; ++probe) {
-        float distance_here = collider_distance(p + outside * (v + outside * b));
-        float next = min(outside + max(distance_here, 0.5 * u_thinnest) / speed, duration);
-        if (collider_distance(p + next * (v + next * b)) < 0.0)
+        float next = min(outside + max(clear, 0.5 * u_thinnest) / speed, duration);
+        clear = collider_distance(p + next * (v + next * b));
+        if (clear < 0.0)
             return vec2(outside, next);
         outside = next;
         if (outside >= duration)
@@ -55,15 +55,17 @@ vec3 bounced(vec3 v, vec3 n, float pull, float left, out bool rests) {
 Impact met(inout vec3 place, inout vec3 velocity, vec3 acceleration, float rate, float duration) {
     vec3 p = place, v = velocity, a = acceleration;
     vec2 damp = HAS_DRAG ? damping(rate * duration) : vec2(1.0, 0.5);
-    vec3 end = p + duration * (damp.x * v + duration * damp.y * a);
-    vec3 leaving = v * (HAS_DRAG ? 1.0 - rate * duration * damp.x : 1.0) + duration * damp.x * a;
+    vec3 begun = HAS_DRAG ? a - rate * v : a;       // the acceleration at the start, drag included
+    vec3 b = damp.y * begun;                        // the path as p + t (v + t b)
+    vec3 gain = damp.x * begun;                     // the velocity as v + t gain; both are exact at the end
+    vec3 end = p + duration * (v + duration * b);
+    vec3 leaving = v + duration * gain;
     Impact impact = Impact(false, false, duration);
     place = end;
     velocity = leaving;
     if (!HAS_COLLIDER)
         return impact;
 
-    vec3 b = (end - p - duration * v) / max(duration * duration, 1e-20);    // the path as p + t (v + t b)
     vec2 span = vec2(0.0, duration);
     if (MAY_PASS_THROUGH) {
         span = entered(p, v, b, duration);
@@ -77,11 +79,12 @@ Impact met(inout vec3 place, inout vec3 velocity, vec3 acceleration, float rate,
     float distance_out = max(collider_distance(p + span.x * (v + span.x * b)), 0.0);
     float t = span.x + (span.y - span.x) * distance_out / max(distance_out - distance_in, 1e-20);
     float near = collider_distance(p + t * (v + t * b));
-    t = near > 0.0 ? t + (span.y - t) * near / max(near - distance_in, 1e-20)
-                   : span.x + (t - span.x) * distance_out / max(distance_out - near, 1e-20);
+    span = near > 0.0 ? vec2(t, span.y) : vec2(span.x, t);
+    vec2 gap = near > 0.0 ? vec2(near, distance_in) : vec2(distance_out, near);
+    t = span.x + (span.y - span.x) * gap.x / max(gap.x - gap.y, 1e-20);
 
     vec3 hit = p + t * (v + t * b);
-    vec3 arriving = mix(v, leaving, t / max(duration, 1e-20));
+    vec3 arriving = v + t * gain;
     vec3 n = collider_normal(hit);
     float left = duration - t;
     float pull = max(0.0, -dot(a, n));

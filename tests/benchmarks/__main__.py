@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Callable
 
-from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels
+from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels, particles
 from tests.benchmarks.report import Row, Section, table
 
 SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
@@ -17,6 +17,7 @@ SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
     "panels": panels.sections,
     "formulas": formulas.sections,
     "isosurfaces": isosurfaces.sections,
+    "particles": particles.sections,
 }
 
 

@@ -59,7 +59,9 @@ def test_the_flow_is_the_curl_of_its_potential() -> None:
     slope = jacobian(potential, points, 2.1e-3)
     curl = np.stack([slope[:, 2, 1] - slope[:, 1, 2], slope[:, 0, 2] - slope[:, 2, 0],
                      slope[:, 1, 0] - slope[:, 0, 1]], axis=1)
-    np.testing.assert_allclose(curl_noise(points), curl, atol=2e-6)
+    error = np.abs(curl_noise(points) - curl)
+    assert np.median(error) < 1e-8
+    assert error.max() < 30 * 2.1e-3**2        # where a difference reaches over the border of a cell
 
 
 @pytest.mark.parametrize("step", [3.7e-4, 1.1e-3])
@@ -68,7 +70,9 @@ def test_nothing_flows_in_or_out(step: float) -> None:
     points = places(2000)
     terms = np.diagonal(jacobian(curl_noise, points, step), axis1=1, axis2=2)
     assert np.sqrt((terms**2).mean()) > 0.5
-    assert np.abs(terms.sum(axis=1)).max() < 1e-5
+    error = np.abs(terms.sum(axis=1))
+    assert np.median(error) < 2e-8
+    assert error.max() < 30 * step**2           # where a difference reaches over the border of a cell
 
 
 def test_what_flows_into_a_box_flows_out_of_it() -> None:
@@ -108,15 +112,18 @@ def test_one_point_and_none() -> None:
     assert curl_noise(np.empty((0, 3))).shape == (0, 3)
 
 
-def test_the_same_on_the_gpu(context: moderngl.Context) -> None:
+def test_the_same_on_the_gpu(context: moderngl.Context, tmp_path: Path) -> None:
     """As closely as single precision tells places apart."""
     points = np.concatenate([places(3000, reach=8.0), places(300, reach=100.0)]).astype(np.float32)
-    gpu = Gpu(context, ShaderFolders(SHADERS))
+    (tmp_path / "probe.vert").write_text(PROBE)
+    gpu = Gpu(context, ShaderFolders([tmp_path, SHADERS]))
     try:
-        target = context.simple_framebuffer((1, 1))
-        target.use()
-        (gpu.folders.folder if hasattr(gpu.folders, "folder") else gpu)
-        program = gpu.context.program  # noqa: F841
+        gpu.framebuffer([gpu.texture((1, 1), 4)]).use()
+        program = gpu.program("probe.vert")
+        array = gpu.vertex_array(program, [(gpu.buffer(points), "3f", "in_place")])
+        found = array.capture({"v_flow": 3}, len(points))["v_flow"]
     finally:
         gpu.release()
-        target.release()
+    wanted = curl_noise(points.astype(np.float64))
+    np.testing.assert_allclose(found[:3000], wanted[:3000], atol=3e-5)
+    np.testing.assert_allclose(found[3000:], wanted[3000:], atol=3e-4)

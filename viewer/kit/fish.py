@@ -142,7 +142,7 @@ def _fin(root: ArrayLike, bend: ArrayLike, tip: ArrayLike, rays: int) -> Mesh:
     sheet = (1.0 - v) ** 2 * curves[0] + 2.0 * v * (1.0 - v) * curves[1] + v * v * curves[2]
     way = normalized(np.cross(np.gradient(sheet, axis=0), np.gradient(sheet, axis=1)))
     rim = np.minimum(1.0, 12.0 * along * (1.0 - along))[:, None] ** 0.5
-    rib = 1.0 - RIB_DEPTH * 0.5 * (1.0 + np.cos(2.0 * np.pi * rays * along[:, None]))
+    rib = 1.0 - RIB_DEPTH * out * 0.5 * (1.0 + np.cos(2.0 * np.pi * rays * along[:, None]))
     thick = (FIN_THICKNESS / 2.0) * rim * rib * np.minimum(1.0, 8.0 * out) ** 0.5 * (1.0 - out) ** 0.6
     return _two_sided(sheet, way * thick[:, :, None])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from viewer.kit.mesh import Triangles, Vertices
 from viewer.kit.shapes import face_normals
 from viewer.kit.surface_sampling import SamplingTable
+
+Pair: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 COUNT = 2**16
 SEED = 20260
@@ -61,7 +63,8 @@ def interior_spans(vertices: Vertices, triangles: Triangles,
     A line is inside where it has gone in through the surface more often than out, so that solids may overlap
     and a shell turned inside out is a hollow.
     """
-    low, high = vertices[triangles].min(axis=(0, 1)), vertices[triangles].max(axis=(0, 1))
+    used = vertices[np.unique(triangles)]
+    low, high = used.min(axis=0), used.max(axis=0)
     lines = _lattice_for(vertices, triangles, low, high)
     cell = (high - low)[[0, 2]] / lines
     stand = low[[0, 2]] + (np.moveaxis(np.indices((lines, lines)), 0, -1) + chance.random((lines, lines, 2))) * cell
@@ -100,7 +103,9 @@ def clearance(vertices: Vertices, triangles: Triangles, points: Vertices,
     from scipy.spatial import cKDTree
 
     corners = vertices[triangles]
-    longest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    a, b, c = corners.transpose(1, 0, 2)
+    lengths = [np.sqrt(np.einsum("ij,ij->i", side, side)) for side in (b - a, c - b, a - c)]
+    longest = np.maximum(np.maximum(lengths[0], lengths[1]), lengths[2])
     side = 0.5 * scale
     cuts = np.maximum(1, np.ceil(longest / side)).astype(np.int64)
     while (cuts * cuts).sum() > len(cuts) + MOST_PIECES:
@@ -130,9 +135,8 @@ def _pieces(corners: Vertices, cuts: NDArray[np.int64]) -> tuple[Vertices, NDArr
 
 def _lattice_for(vertices: Vertices, triangles: Triangles, low: Vertices, high: Vertices) -> int:
     """How many columns along each side: as many as can be looked at in a moment."""
-    flat = vertices[triangles][:, :, [0, 2]]
-    extent = np.maximum((high - low)[[0, 2]], 1e-300)
-    share = (flat.max(axis=1) - flat.min(axis=1)) / extent
+    least, most = _bounds(vertices[triangles])
+    share = (most - least) / np.maximum((high - low)[[0, 2]], 1e-300)
     lines = FINEST
     while lines > COARSEST and ((share * lines + 1.0).prod(axis=1)).sum() > 4 * MOST_PAIRS:
         lines = lines * 3 // 4
@@ -142,10 +146,10 @@ def _lattice_for(vertices: Vertices, triangles: Triangles, low: Vertices, high: 
 def _crossings(corners: Vertices, stand: NDArray[np.float64], low: Vertices, cell: NDArray[np.float64],
                lines: int) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]:
     """Where vertical lines pass through triangles: the line's number, y, and 1 where it goes in, -1 where out."""
-    flat = corners[:, :, [0, 2]]
+    least, most = _bounds(corners)
     with np.errstate(divide="ignore", invalid="ignore"):
-        first = np.nan_to_num((flat.min(axis=1) - low[[0, 2]]) / cell).astype(np.int64)
-        last = np.nan_to_num((flat.max(axis=1) - low[[0, 2]]) / cell).astype(np.int64)
+        first = np.nan_to_num((least - low[[0, 2]]) / cell).astype(np.int64)
+        last = np.nan_to_num((most - low[[0, 2]]) / cell).astype(np.int64)
     first, last = np.clip(first, 0, lines - 1), np.clip(last, 0, lines - 1)
     wide, deep = (last - first + 1).T
     ends = np.cumsum(wide * deep)
@@ -169,14 +173,22 @@ def _crossed(corners: Vertices, stand: NDArray[np.float64], first: NDArray[np.in
     owner = np.repeat(np.arange(part.start, part.stop), pairs)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
     which = (first[owner, 0] + number // deep[owner]) * lines + first[owner, 1] + number % deep[owner]
-    a, b, c = (corners[owner, corner] - np.insert(stand[which], 1, 0.0, axis=1) for corner in range(3))
+    x, z = stand[which].T
+    a, b, c = ((corners[owner, corner, 0] - x, corners[owner, corner, 2] - z) for corner in range(3))
     ab, bc, ca = _side(a, b), _side(b, c), _side(c, a)
     hit = ((ab > 0) & (bc > 0) & (ca > 0)) | ((ab < 0) & (bc < 0) & (ca < 0))
     ab, bc, ca = ab[hit], bc[hit], ca[hit]
-    y = (bc * a[hit, 1] + ca * b[hit, 1] + ab * c[hit, 1]) / (ab + bc + ca)
+    height = corners[owner[hit], :, 1]
+    y = (bc * height[:, 0] + ca * height[:, 1] + ab * height[:, 2]) / (ab + bc + ca)
     return which[hit], y, np.where(ab > 0, -1, 1)
 
 
-def _side(one: Vertices, other: Vertices) -> NDArray[np.float64]:
-    """On which side of the line from ``one`` to ``other``, seen from above, the origin lies; 0 on it."""
-    return np.asarray(one[:, 2] * other[:, 0] - one[:, 0] * other[:, 2])
+def _side(one: Pair, other: Pair) -> NDArray[np.float64]:
+    """On which side of the line from ``one`` to ``other``, x and z each, the origin lies from above; 0 on it."""
+    return np.asarray(one[1] * other[0] - one[0] * other[1])
+
+
+def _bounds(corners: Vertices) -> tuple[Vertices, Vertices]:
+    """The least and the greatest x and z of each triangle, (t, 2) each."""
+    a, b, c = (corners[:, corner, ::2] for corner in range(3))
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)

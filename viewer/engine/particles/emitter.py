@@ -54,8 +54,8 @@ class EmitterParameters(Parameters):
     emitter_thickness: float = slider(
         0.15, 0.001, 50.0, "Radius of the torus' tube, at most that of its ring; half the height of the box; height "
         "of the cone", unit="m", logarithmic=True, group=GROUP, when="emitter=torus|box|cone")
-    emitter_file: Path | None = file(None, "The mesh that particles come from, in metres", suffixes=SUFFIXES,
-                                     rebuild=False, group=GROUP, when="emitter=mesh")
+    emitter_file: Path | None = file(None, "A mesh to emit from, in metres: name it, then choose emitter = mesh",
+                                     suffixes=SUFFIXES, rebuild=False, group=GROUP)
     emitter_scale: float = slider(1.0, 0.001, 1000.0, "How many times larger than it is the mesh or the fish stands",
                                   logarithmic=True, handy=(0.01, 100.0), group=GROUP, when="emitter=mesh|fish")
     emitter_height: float = slider(0.0, -20.0, 20.0, "How high the shape's origin lies", unit="m", group=GROUP)

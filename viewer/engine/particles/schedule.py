@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from viewer.engine.particles.qualities import EmissionParameters
 
 TINY = 1e-9     # of a particle: what rounding may take from a whole one
+ScheduleState: TypeAlias = tuple[float, float, int, float, float]
 
 
 @dataclass(frozen=True)
@@ -22,12 +24,14 @@ class Births:
 class Schedule:
     """Carries the fraction of a particle over from step to step.
 
-    ``owed`` is that fraction, ``seconds`` how long the emitter has been at work.
+    ``owed`` is that fraction, ``seconds`` how long the emitter has been at work. Bursts are counted from the moment
+    ``counted_from``, as many as ``bursts``, with a period of ``every``.
     """
 
     def __init__(self, params: EmissionParameters) -> None:
         self.params = params
         self.owed, self.seconds, self.bursts = 0.0, 0.0, 0
+        self.counted_from, self.every = 0.0, params.burst_every
 
     def first(self) -> list[Births]:
         """What is there at the very start: the first burst."""
@@ -41,13 +45,13 @@ class Schedule:
         self.seconds = end
         return births
 
-    def state(self) -> tuple[float, float, int]:
+    def state(self) -> ScheduleState:
         """All that the schedule remembers."""
-        return self.owed, self.seconds, self.bursts
+        return self.owed, self.seconds, self.bursts, self.counted_from, self.every
 
-    def restore(self, state: tuple[float, float, int]) -> None:
+    def restore(self, state: ScheduleState) -> None:
         """Go back to a ``state``."""
-        self.owed, self.seconds, self.bursts = state
+        self.owed, self.seconds, self.bursts, self.counted_from, self.every = state
 
     def _steady(self, step: float) -> list[Births]:
         rate, working = self.params.rate, self._working_seconds(step)
@@ -61,15 +65,23 @@ class Schedule:
 
     def _bursts_until(self, end: float) -> list[Births]:
         """The bursts in the step that ends at ``end``, by their number rather than by adding up seconds."""
-        every = self.params.burst_every
+        self._follow_period()
         births: list[Births] = []
-        while self.params.burst and (not self.bursts or every) and len(births) < 100:
-            moment = self.bursts * every
+        while self.params.burst and (not self.bursts or self.every) and len(births) < 100:
+            moment = self.counted_from + self.bursts * self.every
             if moment > end + TINY or self._dry(moment):
                 break
             births.append(Births(self.params.burst, max(0.0, end - max(moment, self.seconds))))
             self.bursts += 1
         return births
+
+    def _follow_period(self) -> None:
+        """Count from the last burst where the period has changed; what was not given in its time is not made up for."""
+        if self.params.burst_every != self.every:
+            self.counted_from += max(0, self.bursts - 1) * self.every
+            self.bursts, self.every = min(self.bursts, 1), self.params.burst_every
+        if self.every:
+            self.bursts = max(self.bursts, math.ceil((self.seconds - self.counted_from) / self.every - TINY))
 
     def _working_seconds(self, step: float) -> float:
         """How much of the next step passes before the emitter runs dry, or its wave has run all round."""

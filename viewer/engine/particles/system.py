@@ -20,7 +20,7 @@ from viewer.engine.particles.forces import ForceParameters, Forces
 from viewer.engine.particles.motion import Motion
 from viewer.engine.particles.pool import CHILDREN_SHIFT, DIED, LIVES, STRUCK, Pool, PoolSnapshot
 from viewer.engine.particles.qualities import EmissionParameters, QualityParameters
-from viewer.engine.particles.schedule import Births, Schedule
+from viewer.engine.particles.schedule import Births, Schedule, ScheduleState
 from viewer.engine.rewind import Snapshot
 from viewer.engine.scene import Geometry
 
@@ -74,7 +74,7 @@ class SystemSnapshot:
     """All that the future of a system follows from."""
 
     pool: PoolSnapshot
-    schedule: tuple[float, float, int]
+    schedule: ScheduleState
     tally: Tally
     born: int
     steps: int

@@ -1,0 +1,7 @@
+// What the constants in generated/look.glsl mean: the order of the choices in viewer/engine/particles/look.py, and of
+// the shapes in viewer/engine/particles/sprites.py.
+
+const int FACES_CAMERA = 0, FOLLOWS_VELOCITY = 1, TUMBLES = 2;
+const int SPOT = 0, BALL = 1, PUFF = 2, FLAKE = 3, LEAF = 4, STAR = 5, RING = 6, PICTURE = 7;
+const int POINT = 0, TRIANGLE = 1, SQUARE = 2;
+const int BY_LOOK = 0, BY_AGE = 1, BY_GENERATION = 2, BY_SPEED = 3, BY_MASS = 4, BY_SIZE = 5;

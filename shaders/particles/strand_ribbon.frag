@@ -1,0 +1,45 @@
+#version 330 core
+// One point of a strand, from its root, the first, to its tip.
+#include "generated/strand.glsl"
+#include "particles/paths.glsl"
+#include "particles/ribbon.glsl"
+#include "particles/trail_colors.glsl"
+#include "particles/fibre.glsl"
+
+uniform sampler2D u_launch;
+uniform sampler2D u_end, u_reach, u_tint;           // see strand_reach.frag
+uniform float u_trail_taper, u_shine, u_shine_sharpness, u_root_shade;
+
+vec4 strand_point(ivec2 slot, int point, vec4 end, vec4 reach) {
+    return point > int(end.w) ? vec4(end.xyz, reach.x) : path_point(slot, max(point, 0));
+}
+
+void main() {
+    ivec2 slot;
+    int point;
+    ribbon_point(slot, point);
+    vec4 end = texelFetch(u_end, slot, 0), reach = texelFetch(u_reach, slot, 0);
+    point = min(point * POINTS_APART, int(end.w) + 1);
+    vec4 here = strand_point(slot, point, end, reach);
+    vec3 before = strand_point(slot, max(point - POINTS_APART, 0), end, reach).xyz;
+    vec3 after = strand_point(slot, point + POINTS_APART, end, reach).xyz;
+
+    float up = clamp(here.w / max(reach.x, 1e-9), 0.0, 1.0);
+    float pixel = pixel_size(here.xyz, CASTING ? vec2(SHADOW_PIXELS) : u_frame.resolution);
+    float half_width = reach.y * mix(1.0, 1.0 - up, u_trail_taper);
+    float drawn = widened(half_width, here.xyz, THINNEST, pixel);
+    // Of strands thinner than that, some are left out instead, each by its own chance: the same share is covered.
+    float cover = half_width / max(drawn, 1e-9);
+    drawn *= reach.y > 0.0 && reach.z < reach.y / max(widened(reach.y, here.xyz, THINNEST, pixel), 1e-9) ? 1.0 : 0.0;
+    ribbon_seen(before, here.xyz, after, drawn, pixel, up);
+    out_light = vec4(0.0, 0.0, 0.0, 1.0);
+    if (!CASTING) {
+        vec3 way = after - before;
+        vec3 along = way / max(length(way), 1e-9);
+        vec4 launch = texelFetch(u_launch, slot, 0);
+        vec3 out_of = launch.xyz / max(length(launch.xyz), 1e-9);
+        vec3 albedo = min(life_color(up, int(launch.w)).rgb * texelFetch(u_tint, slot, 0).rgb, 1.0);
+        float open = mix(1.0 - u_root_shade, 1.0, smoothstep(0.0, 0.8, up));
+        out_light = vec4(hair_light(here.xyz, along, out_of, albedo, u_shine, u_shine_sharpness, open), cover);
+    }
+}

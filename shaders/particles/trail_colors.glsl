@@ -1,0 +1,34 @@
+// What colours, opacities and sizes are over a life.
+// vec4 life_color(float part, int generation): linear rgb, and opacity; part: 0 at birth to 1 at death.
+// float life_size(float part): of the particle's size.
+// vec3 own_shade(vec3 color, uint identity): turned in hue and made brighter or darker by the particle's own chance.
+#include "particles/random.glsl"
+
+uniform sampler2D u_life;           // four rows of colour with opacity, one for each generation; then one of sizes
+uniform vec2 u_hue;                 // degrees
+uniform vec2 u_brightness;
+
+vec4 life_row(float part, float row) {
+    vec2 size = vec2(textureSize(u_life, 0));
+    return texture(u_life, vec2((0.5 + clamp(part, 0.0, 1.0) * (size.x - 1.0)) / size.x, (row + 0.5) / size.y));
+}
+
+vec4 life_color(float part, int generation) {
+    return life_row(part, float(clamp(generation, 0, 3)));
+}
+
+float life_size(float part) {
+    return life_row(part, 4.0).r;
+}
+
+// Turned about the axis of greys, by Rodrigues' formula.
+vec3 turned_hue(vec3 color, float angle) {
+    float grey = dot(color, vec3(1.0 / 3.0));
+    vec3 across = (color.zxy - color.yzx) * 0.57735027;
+    return max(vec3(grey) + (color - grey) * cos(angle) + across * sin(angle), 0.0);
+}
+
+vec3 own_shade(vec3 color, uint identity) {
+    vec3 shade = turned_hue(color, radians(mix(u_hue.x, u_hue.y, random_of(identity, 61u))));
+    return shade * mix(u_brightness.x, u_brightness.y, random_of(identity, 62u));
+}
