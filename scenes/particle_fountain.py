@@ -82,7 +82,7 @@ class ParticleFountain(Scene):
             self.system.begin()
         self.sprites.prepare()
         if self.strands:
-            self.strands.prepare()
+            self.strands.prepare(self.view)
         self.inspector.prepare()
         self._show_solids()
 
@@ -150,9 +150,14 @@ class ParticleFountain(Scene):
             "alive": len(arrays["seed"]), "emitted": tally.emitted, "died": tally.died,
             "collisions": tally.collisions, "children": tally.children, "kinetic_energy": kinetic,
             "potential_energy": potential, "fastest": fastest, "step_ms": self.system.step_ms,
-            "draw_ms": self.timer.milliseconds(self.gpu.context.fbo.size, self._draw_particles)}
+            "draw_ms": self.draw_ms()}
         inspected = self.inspector.table()
         return numbers | {"live": self.live_count()} | ({"inspected": inspected} if inspected else {})
+
+    def draw_ms(self) -> float:
+        """How long particles and trails take to draw, in a picture as large as the present one."""
+        looks = self.params.revision, self.gpu.generation
+        return self.timer.milliseconds(self.gpu.context.fbo.size, self._draw_particles, looks)
 
     def live_count(self) -> Curve:
         """How many particles were alive at each frame so far."""

@@ -30,9 +30,9 @@ vec3 hair_light(vec3 place, vec3 along, vec3 out_of, vec3 albedo, float shine, f
     float cos_around = dot(light_across, eye_across)
                      / max(sqrt(dot(light_across, light_across) * dot(eye_across, eye_across)), 1e-4);
     float half_around = sqrt(max(0.0, 0.5 + 0.5 * cos_around));
-    float width = mix(0.35, 0.05, sharpness);
-    float mirrored = 0.11 * lobe(half_angle + 0.10, width) * half_around;
-    float returned = 0.20 * lobe(half_angle - 0.15, 2.0 * width) * half_around * half_around;
+    float width = mix(0.30, 0.04, sharpness);
+    float mirrored = 0.038 * lobe(half_angle + 0.10, width) * half_around;
+    float returned = 0.32 * lobe(half_angle - 0.15, 2.0 * width) * half_around * half_around;
     float behind = max(0.0, -cos_around);
     float through = 0.35 * lobe(half_angle - 0.05, 1.5 * width + 0.1) * behind * behind * behind;
     float cos_light = sqrt(max(0.0, 1.0 - sin_light * sin_light));

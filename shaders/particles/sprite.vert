@@ -51,6 +51,7 @@ void main() {
 
     float radius = place.w;
     float as_such = BILLBOARD == FACES_CAMERA ? clamp(2.0 * radius - SMALL, 0.0, 1.0) : 1.0;
+    as_such *= as_such;             // while it is small its light depends most on where its middle lies
     float drawn = max(radius, 1.0);
     v_shares = vec2(as_such, (1.0 - as_such) * 4.0 * radius * radius * AREAS[SPRITE]);
     v_pixel = vec2(1.0 / drawn);

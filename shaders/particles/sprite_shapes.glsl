@@ -12,6 +12,9 @@ float pixel() { return max(v_pixel.x, v_pixel.y); }
 
 float squared(float x) { return x * x; }
 
+// Nothing may lie beyond, where a triangle and a square would show different parts of it.
+float within_circle(vec2 place) { return step(dot(place, place), 1.0); }
+
 vec4 spot(vec2 place) {
     return vec4(vec3(1.0), squared(max(1.0 - dot(place, place), 0.0)));
 }
@@ -52,17 +55,17 @@ vec4 flake(vec2 place) {
     p.y = abs(p.y);
     float first = v_own.y, second = fract(37.0 * first), third = fract(61.0 * first);
     float plate = dot(p, vec2(0.8660254, 0.5)) - mix(0.08, 0.34, first * first);
-    float line = from_line(p, vec2(0.0), vec2(0.93, 0.0));
+    float width = max(0.030, 0.55 * pixel()), edge = max(pixel(), 0.02);
+    float line = from_line(p, vec2(0.0), vec2(min(0.95, 1.0 - width), 0.0));
     vec2 slant = vec2(0.5, 0.8660254);
     for (int branch = 0; branch < 3; ++branch) {
         float at = mix(0.30, 0.40, second) + 0.20 * float(branch);
         float reach = (0.98 - at) * mix(0.25, 0.72, fract(third + 0.37 * float(branch)));
         line = min(line, from_line(p, vec2(at, 0.0), vec2(at, 0.0) + reach * slant));
     }
-    float width = max(0.030, 0.55 * pixel()), edge = max(pixel(), 0.02);
     float arms = clamp(0.5 + (width - line) / edge, 0.0, 1.0) * min(1.0, 0.045 / width + 0.35);
     float inner = clamp(0.5 - plate / edge, 0.0, 1.0) * (0.45 + 0.35 * smoothstep(-0.10, 0.0, plate));
-    return vec4(vec3(1.0), max(arms, inner));
+    return vec4(vec3(1.0), max(arms, inner) * within_circle(place));
 }
 
 // A blade around a bent midrib, with side veins; broad or slim.
@@ -83,7 +86,7 @@ vec4 leaf(vec2 place) {
     float outer = side / max(half_width, 1e-3);
     float shade = 0.80 + 0.25 * midrib + 0.22 * vein - 0.18 * smoothstep(0.4, 1.0, outer);
     vec3 ageing = mix(vec3(1.0), vec3(1.12, 0.80, 0.55), 0.5 * smoothstep(0.5, 1.0, outer));
-    return vec4(shade * ageing, max(blade, stem));
+    return vec4(shade * ageing, max(blade, stem) * within_circle(place));
 }
 
 // A bright core and the rays of a lens, four long and four short.

@@ -214,7 +214,7 @@ class Scene:
         """Advance a simulation by one fixed step of ``dt`` seconds; scenes without one leave this out."""
 
     def steered_by(self) -> Hashable:
-        """What the simulation follows from: while this stays equal, the same frames come again. By default everything."""
+        """What the simulation follows from, by default everything: while it stays equal, the same frames come again."""
         return int(self.params.revision)
 
     def snapshot(self) -> Snapshot | None:

@@ -24,5 +24,6 @@ def curl_noise(points: ArrayLike) -> NDArray[np.float64]:
 
 
 def _gradient(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    x, y, z = places.T
     orders = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-    return np.stack([np.asarray(noise_derivative(*places.T, order), np.float64) for order in orders], axis=1)
+    return np.stack([np.asarray(noise_derivative(x, y, z, order), np.float64) for order in orders], axis=1)

@@ -74,7 +74,8 @@ class NearestTriangle:
         best = found.argmin(axis=1)[:, None]
         chosen[part] = np.take_along_axis(candidates, best, axis=1)[:, 0]
         smallest = np.take_along_axis(found, best, axis=1)[:, 0]
-        return part[(distances[:, -1] < smallest + self._reach - self._tolerance) & (smallest <= within)]
+        unsure = (distances[:, -1] < smallest + self._reach - self._tolerance) & (smallest <= within)
+        return np.asarray(part[unsure])
 
     def _on(self, points: Points, chosen: Indices) -> Nearest:
         rows = self._rows[chosen]

@@ -25,7 +25,7 @@ class EdgeUses(NamedTuple):
     are; and whether each edge is run through as often one way as the other, so that the mesh is ``closed``."""
 
     edge: NDArray[np.intp]
-    count: int
+    number: int
     closed: bool
 
 
@@ -45,7 +45,7 @@ def feature_normals(vertices: Points, triangles: Triangles, uses: EdgeUses, chos
     at_vertex, at_edge = feature < 3, (feature >= 3) & (feature < 6)
     of_vertex = vertex_normals(vertices, triangles[around], faces)
     found[at_vertex] = of_vertex[triangles[chosen[at_vertex], feature[at_vertex]]]
-    of_edge = _summed(uses.edge[around], np.broadcast_to(faces[:, None], (len(faces), 3, 3)), uses.count)
+    of_edge = _summed(uses.edge[around], np.broadcast_to(faces[:, None], (len(faces), 3, 3)), uses.number)
     found[at_edge] = of_edge[uses.edge[chosen[at_edge], feature[at_edge] - 3]]
     return found
 

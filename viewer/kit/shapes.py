@@ -6,7 +6,7 @@ The solids are closed and share their vertices; ``creased`` parts these for shad
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from viewer.kit.mesh import Mesh, Triangles, Vertices, normalized, quads_to_triangles
 
 ShadedMesh: TypeAlias = tuple[Vertices, Vertices, Triangles]
+Indices: TypeAlias = NDArray[np.integer[Any]]       # triangles of any integers
 
 
 def disc(radius: float, segments: int = 96) -> Mesh:
@@ -71,7 +72,7 @@ def flat_shaded(vertices: Vertices, triangles: Triangles) -> ShadedMesh:
     return vertices[triangles.ravel()], normals, np.arange(triangles.size, dtype=np.int32).reshape(-1, 3)
 
 
-def creased(vertices: Vertices, triangles: Triangles, degrees: float = 30.0) -> ShadedMesh:
+def creased(vertices: Vertices, triangles: Indices, degrees: float = 30.0) -> ShadedMesh:
     """Vertices parted along edges where faces meet at more than ``degrees``, each with the normal of its side.
 
     Returns vertices (k, 3), normals (k, 3) of length 1 and triangles (m, 3). A normal is the mean over the
@@ -92,13 +93,13 @@ def creased(vertices: Vertices, triangles: Triangles, degrees: float = 30.0) -> 
     return vertices[origin], normalized(sums), part.reshape(-1, 3).astype(np.int32)
 
 
-def face_normals(vertices: Vertices, triangles: Triangles) -> Vertices:
+def face_normals(vertices: Vertices, triangles: Indices) -> Vertices:
     """The unit normal of each triangle (m, 3); zero for one without area."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     return normalized(np.cross(b - a, c - a))
 
 
-def corner_angles(vertices: Vertices, triangles: Triangles) -> NDArray[np.float64]:
+def corner_angles(vertices: Vertices, triangles: Indices) -> NDArray[np.float64]:
     """The angle at each corner of each triangle, in radians: (m, 3)."""
     corners = vertices[triangles]
     onward, back = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
@@ -106,7 +107,7 @@ def corner_angles(vertices: Vertices, triangles: Triangles) -> NDArray[np.float6
     return np.asarray(np.arctan2(across, np.einsum("tci,tci->tc", onward, back)))
 
 
-def half_edges(triangles: Triangles, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def half_edges(triangles: Indices, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The sides of all triangles, sorted so that those between the same two vertices stand together.
 
     Side s goes from corner s of ``triangles.ravel()`` to the next of its triangle. Returns the sorted sides
@@ -119,7 +120,7 @@ def half_edges(triangles: Triangles, count: int) -> tuple[NDArray[np.int64], NDA
     return order, np.cumsum(np.concatenate([[False], ordered[1:] != ordered[:-1]])[:len(order)])
 
 
-def _smooth_pairs(normals: Vertices, triangles: Triangles, cosine: float,
+def _smooth_pairs(normals: Vertices, triangles: Indices, cosine: float,
                   count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of corners that are one vertex in shading: those at either end of an edge between two smooth faces."""
     sides, edge = half_edges(triangles, count)

@@ -16,6 +16,7 @@ from viewer.engine.particles.sprite_shadow import SpriteShadow, slot_constants
 from viewer.engine.particles.system import ParticleSystem
 from viewer.engine.program import VertexArray
 from viewer.engine.scene import ColorScale
+from viewer.engine.sprite_layer import OVER
 
 SCENE_DEPTH_UNIT, PICTURE_UNIT = 4, 5
 SHAPES = {"point": (moderngl.POINTS, 0), "triangle": (moderngl.TRIANGLES, 3),
@@ -80,7 +81,7 @@ class Sprites:
         overdraw = self.overdraw
         with overdraw.counting(scene_depth.size):
             self._draw_sprites(scene_depth, number)
-        self.gpu.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self.gpu.context.blend_func = OVER  # type: ignore[assignment]
         overdraw.show()
 
     def _draw_sprites(self, scene_depth: moderngl.Texture, number: int) -> None:

@@ -19,6 +19,7 @@ from viewer.engine.shadow import DEPTH_SIZE
 
 SHADOW_POINTS, FEWEST_POINTS = 6, 5     # are enough for a shadow, and for a strand that is short in the picture
 SHORTEST = 9.0                          # pixels: how long a piece of a strand between two points at least is
+SAMPLE_ALPHA_TO_COVERAGE = 0x809E       # GL's number for it, which moderngl has no name for
 SLOPE_TO_HEIGHT = 1.6                   # the picture's height, for a slope of 1, about
 
 
@@ -66,7 +67,12 @@ class Strands:
         """Draw all strands, or their shadow."""
         if self.pool.rows:
             casting = self.gpu.casting_shadows
-            self._ribbons_for(self._shadow_apart if casting else self._apart(), casting).draw(self._bind)
+            ribbons = self._ribbons_for(self._shadow_apart if casting else self._apart(), casting)
+            self.gpu.context.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+            try:
+                ribbons.draw(self._bind)
+            finally:
+                self.gpu.context.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
 
     def _grow(self) -> None:
         self.passes += 1
