@@ -37,7 +37,6 @@ from viewer import (
 )
 
 SECONDS_PER_FRAME = 1.0 / 60.0
-EMITTER_COLOR = (0.55, 0.6, 0.66)
 GROUND_COLOR = (0.42, 0.46, 0.52)
 BACKDROPS = {
     "studio": ("#c9ced6", "#7f8b9c"), "dusk": ("#3d4d63", "#131b29"), "night": ("#0d1017", "#020306"),
@@ -99,7 +98,7 @@ class ParticleFountain(Scene):
     def draw(self) -> None:
         if not self.params.hollow:
             self.obstacle.draw(self.params.obstacle_color)
-        self.emitter.draw(EMITTER_COLOR)
+        self.emitter.draw(self.params.emitter_color)
         self.slope.draw(GROUND_COLOR)
         if self.strands:
             self.strands.draw()

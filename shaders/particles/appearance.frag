@@ -10,15 +10,16 @@
 uniform sampler2D u_motion, u_velocity, u_nature, u_origin, u_launch;
 uniform float u_stretch;
 uniform float u_softness;
+uniform float u_opacity;
 uniform vec2 u_spin;            // degrees a second
 uniform float u_largest_point;  // in pixels
 
 layout(location = 0) out vec4 out_place;    // middle in pixels, window depth, half the width in pixels
 layout(location = 1) out vec4 out_tint;     // its light where it is opaque, and its opacity
-layout(location = 2) out vec4 out_axes;     // from the middle to the polygon's right edge, and to its upper one
-layout(location = 3) out vec4 out_turn;     // key light that reaches it, a random number, its turn's cosine and sine
+layout(location = 2) out vec4 out_turn;     // key light that reaches it, a random number, its turn's cosine and sine
                                             // or, where it tumbles, how much farther its right and upper edges are
-layout(location = 4) out uint out_key;
+layout(location = 3) out uint out_key;
+layout(location = 4) out vec4 out_axes;     // from the middle to the polygon's right edge, and to its upper one
 
 const uint UNSEEN = 65535u;
 const float FULL_TURN = 6.283185307179586;
@@ -27,7 +28,8 @@ const float LARGEST = 16384.0;              // half of a sprite, in pixels
 struct Particle {
     vec3 place, velocity, view;             // in the world, and its place before the camera
     uint identity;
-    float age, diameter;
+    float over, age;                        // how much of its life is over, and seconds
+    float diameter, opacity;                // as they now are
     bool stuck;
 };
 
@@ -114,39 +116,59 @@ uint key_of(float distance_away, bool too_large) {
     return uint(32766.0 * clamp(nearness, 0.0, 1.0)) << 1u | (too_large ? 1u : 0u);
 }
 
-void main() {
-    ivec2 slot = ivec2(gl_FragCoord.xy);
-    vec4 motion = texelFetch(u_motion, slot, 0);
+Particle particle_at(ivec2 slot, out float left_to_live) {
+    vec4 motion = texelFetch(u_motion, slot, 0), velocity = texelFetch(u_velocity, slot, 0);
     vec4 nature = texelFetch(u_nature, slot, 0);
-    vec4 velocity = texelFetch(u_velocity, slot, 0);
-    float over = clamp(1.0 - motion.w / max(nature.x, 1e-6), 0.0, 1.0);
-    vec2 size_and_opacity = over_life(over, 0).xy;
-    Particle one = Particle(motion.xyz, velocity.xyz, vec3(0.0), uint(abs(velocity.w)), over * nature.x,
-                            nature.y * size_and_opacity.x, velocity.w < 0.0);
+    left_to_live = motion.w;
+    Particle one;
+    one.stuck = velocity.w < 0.0;
+    one.identity = uint(abs(velocity.w));
+    one.velocity = velocity.xyz;
+    one.over = clamp(1.0 - motion.w / max(nature.x, 1e-6), 0.0, 1.0);
+    one.age = one.over * nature.x;
+    vec2 size_and_opacity = over_life(one.over, 0).xy;
+    one.diameter = nature.y * size_and_opacity.x;
+    one.opacity = COLOURING == BY_LOOK ? u_opacity * size_and_opacity.y : 1.0;  // what tells something is opaque
+    one.place = motion.xyz;
     if (BILLBOARD == TUMBLES && one.stuck)      // on what it lies on, not in it
         one.place.y += 0.1 * one.diameter;
     one.view = (u_frame.view * vec4(one.place, 1.0)).xyz;
+    return one;
+}
+
+Qualities qualities_of(Particle one, ivec2 slot) {
+    vec4 nature = texelFetch(u_nature, slot, 0);
+    int generation = int(texelFetch(u_launch, slot, 0).w);
+    return Qualities(one.identity, generation, one.over, length(one.velocity), nature.z, nature.y, one.diameter);
+}
+
+bool is_outside(Polygon polygon) {
+    vec2 reach = abs(polygon.axes.xy) + abs(polygon.axes.zw) + 2.0;
+    return any(lessThan(polygon.middle + reach, vec2(0.0)))
+        || any(greaterThan(polygon.middle - reach, u_frame.resolution));
+}
+
+void main() {
+    ivec2 slot = ivec2(gl_FragCoord.xy);
+    float left_to_live;
+    Particle one = particle_at(slot, left_to_live);
     float away = -one.view.z;
-    bool seen = motion.w > 0.0 && one.diameter > 0.0 && away > 1.0001 * nearest() && away < farthest();
+    bool seen = left_to_live > 0.0 && one.diameter > 0.0 && away > 1.0001 * nearest() && away < farthest();
     if (!seen)
         one.view = vec3(0.0, 0.0, -1.0);        // where numbers stay finite
     away = -one.view.z;
 
     float scale = min(pixels_per_slope() / away, LARGEST / max(0.5 * one.diameter, 1e-6));
+    float radius = 0.5 * one.diameter * scale;
     Polygon polygon = BILLBOARD == FOLLOWS_VELOCITY ? stretched(one, scale) :
                       BILLBOARD == TUMBLES ? tumbling(one, scale) : facing_camera(one, scale);
-    float opacity = size_and_opacity.y;
     if (SOFT)                                   // what the eye passes through fades away before
-        opacity *= clamp((away - nearest()) / (u_softness + 0.5 * one.diameter), 0.0, 1.0);
-    Qualities qualities = Qualities(one.identity, int(texelFetch(u_launch, slot, 0).w), over, length(velocity.xyz),
-                                    nature.z, nature.y, one.diameter);
-    float reaching, radius = 0.5 * one.diameter * scale;
-    out_tint = tint(one.place, polygon.normal, qualities, opacity, reaching);
+        one.opacity *= clamp((away - nearest()) / (u_softness + 0.5 * one.diameter), 0.0, 1.0);
+    float reaching;
+    out_tint = tint(one.place, polygon.normal, qualities_of(one, slot), one.opacity, reaching);
     out_place = vec4(polygon.middle, depth_at(away), radius);
     out_axes = polygon.axes;
     out_turn = vec4(reaching, random_of(one.identity, 70u), polygon.depths);
-    vec2 reach = abs(polygon.axes.xy) + abs(polygon.axes.zw) + 2.0;
-    bool outside = any(lessThan(polygon.middle + reach, vec2(0.0)))
-                || any(greaterThan(polygon.middle - reach, u_frame.resolution));
-    out_key = seen && !outside && out_tint.a > 0.0 ? key_of(away, 2.0 * radius > u_largest_point) : UNSEEN;
+    bool drawn = seen && !is_outside(polygon) && out_tint.a > 0.0;
+    out_key = drawn ? key_of(away, 2.0 * radius > u_largest_point) : UNSEEN;
 }

@@ -61,7 +61,8 @@ void ride_wave(inout vec3 place, inout vec3 normal) {
     float raised = mix(farthest, nearest, 0.5 * height + 0.5);
     vec3 around = normalize(normal - height * up + 1e-6 * turned(vec3(1.0, 0.0, 0.0)));
     vec3 moved = raised * up + sqrt(max(0.0, 1.0 - raised * raised)) * around;
-    place += u_emitter_size * (moved - normal);
+    float depth = dot(place - vec3(0.0, u_emitter_height, 0.0), normal);     // from the centre
+    place += depth * (moved - normal);
     normal = moved;
 }
 
@@ -99,7 +100,7 @@ void main() {
     float size = drawn(plan.size, random_state), mass = drawn(u_mass, random_state), drag = drawn(u_drag, random_state);
     if (HAS_COLLIDER) {                         // whoever is born inside something is pushed out of it, or not born
         place += max(0.0, -collider_distance(place)) * collider_normal(place);
-        place += max(0.0, 1e-6 - collider_distance(place)) * collider_normal(place);
+        place += max(0.0, collider_clearance(place) - collider_distance(place)) * collider_normal(place);
         if (collider_distance(place) < 0.0)
             lifetime = 0.0;
     }

@@ -28,7 +28,8 @@ int brood(int generation, uint identity, float left_before, float left_after, bo
     if ((moment == ON_IMPACT && struck) || (moment == AT_DEATH && died)) {
         uint event = identity ^ floatBitsToUint(left_before);
         number = mix(range.x, range.y, random_of(event, 41u));
-        return clamp(int(number + random_of(event, 42u)), 0, MOST_CHILDREN);
+        int whole = int(number);
+        return clamp(random_of(event, 42u) < number - float(whole) ? whole + 1 : whole, 0, MOST_CHILDREN);
     }
     return 0;
 }

@@ -1,6 +1,7 @@
 // What particles bounce off: a ground plane and one obstacle.
 // float collider_distance(vec3 p): metres to the nearest surface, negative inside what is solid. It never changes
 // by more than the way gone, so that one who goes that far meets no surface (Hart, "Sphere Tracing", 1996).
+// float collider_clearance(vec3 p): how far off a surface is surely off it.
 // vec3 collider_normal(vec3 p): of length one, towards where particles may be; finite everywhere.
 // A hollow obstacle is a vessel: what is solid is its outside.
 #include "generated/collider.glsl"
@@ -135,4 +136,9 @@ vec3 collider_normal(vec3 p) {
         if (ground_distance(p) <= obstacle_distance(p))
             return u_collider_plane.xyz;
     return obstacle_normal(p);
+}
+
+// So far off a surface one is surely off it, with the rounding there is at p.
+float collider_clearance(vec3 p) {
+    return 1e-6 + 4e-7 * (abs(p.x) + abs(p.y) + abs(p.z));
 }

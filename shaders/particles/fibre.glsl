@@ -12,7 +12,8 @@ vec3 thin_cylinder(vec3 place, vec3 along) {
     float gloss = max(0.0, sin_light * sin_eye - cos_light * cos_eye);
     gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss;
     float reaching = key_light_on_surface(place, to_light);
-    return mix(FLOOR_LIGHT, SKY_LIGHT, 0.5) + 0.4 * FILL_LIGHT + reaching * KEY_LIGHT * (0.8 * sin_light / PI + 0.25 * gloss);
+    vec3 around = mix(FLOOR_LIGHT, SKY_LIGHT, 0.5) + 0.4 * FILL_LIGHT;
+    return around + reaching * KEY_LIGHT * (0.8 * sin_light / PI + 0.25 * gloss);
 }
 
 float lobe(float angle, float width) {
@@ -41,6 +42,6 @@ vec3 hair_light(vec3 place, vec3 along, vec3 out_of, vec3 albedo, float shine, f
     float reaching = key_light_on_surface(place, 0.5 * to_light) * mix(0.35, 1.0, open);
     vec3 glossy = shine / max(width, 0.05) * 0.35 * (vec3(mirrored) + albedo * (returned + through));
     vec3 sky = mix(FLOOR_LIGHT, SKY_LIGHT, 0.5 + 0.5 * out_of.y) + 0.35 * FILL_LIGHT;
-    vec3 diffuse = albedo * cos_light * skin / PI * 1.25;
+    vec3 diffuse = albedo * cos_light * skin / PI;
     return open * albedo * sky + reaching * KEY_LIGHT * (diffuse + glossy * mix(0.3, 1.0, skin));
 }

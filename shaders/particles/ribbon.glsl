@@ -3,7 +3,8 @@
 // float pixel_size(vec3 place, vec2 resolution): how wide a pixel is there, in metres.
 // float widened(float half_width, vec3 place, float thinnest, float pixel): half the width to draw, in metres: no less
 // than so many pixels in all, and not so wide as to fill the eye.
-// void ribbon_seen(vec3 before, vec3 here, vec3 after, float half_width, float pixel, float along): writes out_middle and out_side.
+// void ribbon_seen(vec3 before, vec3 here, vec3 after, float half_width, float pixel, float along): writes out_middle
+// and out_side; `along` tells the drawing how far from the ribbon's start it is.
 #include "generated/ribbon.glsl"
 #include "lib/frame.glsl"
 
@@ -58,7 +59,8 @@ vec2 miter(vec2 one, vec2 other) {
 void ribbon_seen(vec3 before, vec3 here, vec3 after, float half_width, float pixel, float along) {
     mat3 turn = mat3(u_frame.view);
     vec3 place = in_view(here);
-    vec2 side = half_width * miter(across_line(place, turn * (here - before)), across_line(place, turn * (after - here)));
+    vec2 one = across_line(place, turn * (here - before)), other = across_line(place, turn * (after - here));
+    vec2 side = half_width * miter(one, other);
     out_middle = u_frame.projection * vec4(place, 1.0);
     out_side = vec4(u_frame.projection[0][0] * side.x, u_frame.projection[1][1] * side.y, half_width / pixel, along);
 }

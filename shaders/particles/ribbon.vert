@@ -3,7 +3,7 @@
 #include "generated/ribbon.glsl"
 
 uniform sampler2D u_middle;         // in clip space
-uniform sampler2D u_side;           // from there to an edge, in clip space; z: how many pixels that is; w: how far along
+uniform sampler2D u_side;           // from there to an edge, in clip space; z: so many pixels; w: how far along
 uniform sampler2D u_light;
 
 out vec4 v_across;                  // -1 to 1, times y, which keeps it straight where a ribbon tapers; z: half its

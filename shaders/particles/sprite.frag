@@ -16,6 +16,7 @@ flat in vec2 v_soft;
 flat in vec2 v_own;
 flat in vec3 v_key;
 flat in vec3 v_up;
+flat in vec3 v_mean;
 
 uniform sampler2D u_scene_depth;
 uniform float u_lighting;
@@ -45,7 +46,7 @@ void main() {
     }
     vec2 away = gl_FragCoord.xy - v_middle;
     vec2 place = BILLBOARD != FACES_CAMERA ? v_corner :
-                 USES_TURN ? vec2(dot(away, v_axis), dot(away, vec2(-v_axis.y, v_axis.x))) * v_pixel.x : away * v_pixel.x;
+                 v_pixel.x * (USES_TURN ? vec2(dot(away, v_axis), dot(away, vec2(-v_axis.y, v_axis.x))) : away);
     vec4 shape = shape_at(place);
     shape.a *= v_shares.x;
     if (BILLBOARD == FACES_CAMERA) {        // tents on neighbouring pixels sum to 1, wherever the middle is

@@ -10,6 +10,7 @@ in uint in_slot;
 
 uniform sampler2D u_place, u_tint, u_axes, u_turn;
 uniform float u_softness;
+uniform float u_lighting;
 
 out vec2 v_corner;                  // of a polygon, -1 to 1
 flat out vec2 v_middle;             // in pixels
@@ -22,9 +23,11 @@ flat out vec2 v_soft;               // its distance, and one over the length in 
 flat out vec2 v_own;                // the key light that reaches it, and a random number
 flat out vec3 v_key;                // where the key light is, as the camera sees it
 flat out vec3 v_up;
+flat out vec3 v_mean;               // how bright it is as a whole
 
-const float SMALL = 2.0;            // pixels wide: as a blot alone; from 1 more on as it is
-const float AREAS[8] = float[](0.2618, 0.785, 0.36, 0.25, 0.36, 0.055, 0.36, 0.5);   // covered, of a square around it
+#include "particles/sprite_light.glsl"
+
+const float SMALL = 2.0, LARGE = 3.4;       // pixels wide: up to here as a blot alone, from there as it is
 
 vec2 around_square() {
     return vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, gl_VertexID < 2 ? -1.0 : 1.0);
@@ -41,6 +44,40 @@ vec2 at_least_a_pixel(vec2 axis, vec2 otherwise, inout float share) {
     return size >= 1.0 ? axis : size > 1e-6 ? axis / size : otherwise;
 }
 
+// The polygon's axes; what is too thin for the pixels is drawn wider, and fainter.
+vec4 polygon_axes(ivec2 slot, float drawn) {
+    if (BILLBOARD == FACES_CAMERA)
+        return drawn * vec4(v_axis, -v_axis.y, v_axis.x);
+    vec4 axes = texelFetch(u_axes, slot, 0);
+    float share = 1.0;
+    axes.xy = at_least_a_pixel(axes.xy, vec2(1.0, 0.0), share);
+    axes.zw = at_least_a_pixel(axes.zw, vec2(0.0, 1.0), share);
+    v_tint.a *= share;
+    v_extent = vec2(length(axes.xy), length(axes.zw));
+    v_axis = axes.xy / v_extent.x;
+    v_pixel = 1.0 / v_extent;
+    return axes;
+}
+
+// While it is small its light depends most on where its middle lies: then the blot has the greater share.
+void share_out(float radius) {
+    float as_such = BILLBOARD == FACES_CAMERA ? clamp((2.0 * radius - SMALL) / (LARGE - SMALL), 0.0, 1.0) : 1.0;
+    as_such *= as_such;
+    v_shares = vec2(as_such, (1.0 - as_such) * 4.0 * radius * radius * AREAS[SPRITE]);
+}
+
+void tell_fragments(float depth, float radius) {
+    if (SOFT) {
+        float away = distance_at(depth);
+        v_soft = vec2(away, 1.0 / max(min(u_softness, 2.0 * radius * away / pixels_per_slope()), 1e-6));
+    }
+    if (SHADED) {
+        v_key = mat3(u_frame.view) * u_frame.key_direction;
+        v_up = u_frame.view[1].xyz;
+        v_mean = shaded(vec3(0.0, 0.0, SPRITE == BALL ? 0.65 : 1.0));
+    }
+}
+
 void main() {
     ivec2 slot = ivec2(int(in_slot) & WIDTH_MASK, int(in_slot) >> WIDTH_BITS);
     vec4 place = texelFetch(u_place, slot, 0);
@@ -49,44 +86,23 @@ void main() {
     v_own = turn.xy;
     v_axis = BILLBOARD == TUMBLES ? vec2(1.0, 0.0) : turn.zw;
 
-    float radius = place.w;
-    float as_such = BILLBOARD == FACES_CAMERA ? clamp(2.0 * radius - SMALL, 0.0, 1.0) : 1.0;
-    as_such *= as_such;             // while it is small its light depends most on where its middle lies
-    float drawn = max(radius, 1.0);
-    v_shares = vec2(as_such, (1.0 - as_such) * 4.0 * radius * radius * AREAS[SPRITE]);
-    v_pixel = vec2(1.0 / drawn);
-    v_middle = place.xy;
+    float drawn = max(place.w, 1.0), depth = place.z;
     vec2 window = place.xy;
-    float depth = place.z;
+    v_middle = place.xy;
+    v_pixel = vec2(1.0 / drawn);
     v_corner = vec2(0.0);
     v_extent = vec2(drawn);
-    if (SHAPE == POINT) {                   // GL leaves out points whose middle is beyond the border
+    if (SHAPE == POINT) {           // GL leaves out points whose middle is beyond the border
         window = clamp(window, vec2(0.0), u_frame.resolution);
         gl_PointSize = 2.0 * drawn;
     } else {
         v_corner = SHAPE == TRIANGLE ? around_circle() : around_square();
-        vec4 axes = drawn * vec4(v_axis, -v_axis.y, v_axis.x);
-        if (BILLBOARD != FACES_CAMERA) {
-            axes = texelFetch(u_axes, slot, 0);
-            float share = 1.0;
-            axes.xy = at_least_a_pixel(axes.xy, vec2(1.0, 0.0), share);
-            axes.zw = at_least_a_pixel(axes.zw, vec2(0.0, 1.0), share);
-            v_tint.a *= share;
-            v_extent = vec2(length(axes.xy), length(axes.zw));
-            v_axis = axes.xy / v_extent.x;
-            v_pixel = 1.0 / v_extent;
-        }
+        vec4 axes = polygon_axes(slot, drawn);
         window += v_corner.x * axes.xy + v_corner.y * axes.zw;
         if (BILLBOARD == TUMBLES)
             depth = depth_at(max(distance_at(depth) + dot(v_corner, turn.zw), 1.001 * nearest()));
     }
-    if (SOFT) {
-        float away = distance_at(place.z);
-        v_soft = vec2(away, 1.0 / max(min(u_softness, 2.0 * radius * away / pixels_per_slope()), 1e-6));
-    }
-    if (SHADED) {
-        v_key = mat3(u_frame.view) * u_frame.key_direction;
-        v_up = u_frame.view[1].xyz;
-    }
+    share_out(place.w);
+    tell_fragments(place.z, place.w);
     gl_Position = vec4(2.0 * window / u_frame.resolution - 1.0, clamp(2.0 * depth - 1.0, -1.0, 1.0), 1.0);
 }

@@ -1,6 +1,8 @@
 #version 330 core
 // A particle as the key light sees it: a disc, drawn as a point. Where there are very many, each stands for several.
+#include "generated/look.glsl"
 #include "generated/sprite_shadow.glsl"
+#include "particles/sprite_kinds.glsl"
 #include "lib/frame.glsl"
 #include "particles/random.glsl"
 
@@ -23,7 +25,7 @@ void main() {
     area *= area * float(u_each_stands_for);
 
     v_identity = uint(abs(texelFetch(u_velocity, slot, 0).w));
-    v_density = u_opacity * size_and_opacity.y * min(area, 1.0);
+    v_density = u_opacity * size_and_opacity.y * min(area, 1.0) * 2.0 * AREAS[SPRITE] / AREAS[BALL];
     gl_PointSize = clamp(sqrt(area), 1.0, 250.0);
     bool stops_light = motion.w > 0.0 && v_density > 0.0;
     gl_Position = stops_light ? u_frame.view_projection * vec4(motion.xyz, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);

@@ -97,7 +97,8 @@ vec4 star(vec2 place) {
     vec2 rays = thin / (thin + place.yx * place.yx) * squared(window);
     vec2 short_rays = thin / (thin + slanted * slanted) * squared(squared(window));
     float halo = 1.0 / (1.0 + 90.0 * dot(place, place));
-    float light = window * (halo * halo * 1.6 + 0.12 * halo) + 0.55 * (rays.x + rays.y) + 0.16 * (short_rays.x + short_rays.y);
+    float core = window * (halo * halo * 1.6 + 0.12 * halo);
+    float light = core + 0.55 * (rays.x + rays.y) + 0.16 * (short_rays.x + short_rays.y);
     return vec4(vec3(1.0), min(light, 1.5));
 }
 
@@ -106,10 +107,12 @@ vec4 ring(vec2 place) {
     float around = dot(place, place), radius = sqrt(around);
     float skin = 0.05 + 0.75 * squared(squared(around)) * around;
     vec2 window = place - vec2(-0.36, 0.44), lower = place - vec2(0.42, -0.50);
-    float mirrored = squared(max(1.0 - 14.0 * dot(window, window), 0.0)) + 0.35 * squared(max(1.0 - 22.0 * dot(lower, lower), 0.0));
+    float mirrored = squared(max(1.0 - 14.0 * dot(window, window), 0.0));
+    mirrored += 0.35 * squared(max(1.0 - 22.0 * dot(lower, lower), 0.0));
     vec3 film = 1.0 + 0.35 * cos(TWO_PI * (1.3 * around + v_own.y + 0.15 * place.y + vec3(0.0, 0.33, 0.67)));
     float opacity = clamp(skin + mirrored, 0.0, 1.0);
-    return vec4(mix(film, vec3(1.3), mirrored / max(skin + mirrored, 1e-3)), opacity * clamp((1.0 - radius) / pixel(), 0.0, 1.0));
+    vec3 shade = mix(film, vec3(1.3), mirrored / max(skin + mirrored, 1e-3));
+    return vec4(shade, opacity * clamp((1.0 - radius) / pixel(), 0.0, 1.0));
 }
 
 vec4 picture(vec2 place) {
@@ -133,5 +136,5 @@ vec3 mean_shade() {
         vec4 mean = textureLod(u_picture, vec2(0.5), 20.0);
         return 2.0 * mean.rgb;      // a square of which half is covered is what sprite.vert reckons with
     }
-    return SHADED ? shaded(vec3(0.0, 0.0, 1.0)) : vec3(1.0);
+    return SHADED ? v_mean : vec3(1.0);
 }

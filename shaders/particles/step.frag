@@ -63,7 +63,8 @@ void main() {
     bool died = lives && left <= 0.0;
     int children = 0;
     if (CASCADES && lives)
-        children = brood(int(texelFetch(u_launch, slot, 0).w), uint(identity), motion.w, max(left, 0.0),
+        children = brood(int(texelFetch(u_launch, slot, 0).w), uint(identity), motion.w,
+                         max(0.0, motion.w - (ON_COLLISION == COLLISION_DIE ? impact.moment : duration)),
                          impact.struck, died);
     out_motion = lives ? vec4(place, max(left, 0.0)) : motion;
     out_velocity = lives ? vec4(now, stuck ? -identity : identity) : velocity;

@@ -28,11 +28,9 @@ void main() {
     float pixel = pixel_size(here.xyz, CASTING ? vec2(SHADOW_PIXELS) : u_frame.resolution);
     float half_width = reach.y * mix(1.0, 1.0 - up, u_trail_taper);
     float drawn = widened(half_width, here.xyz, THINNEST, pixel);
-    // Of strands thinner than that even at the root some are left out, each by its own chance, so that the same share
-    // of the picture is covered; towards the tip they cover fewer of a pixel's samples.
-    float kept = min(1.0, 2.0 * reach.y / (THINNEST * pixel));
-    float cover = half_width / max(drawn * kept, 1e-9);
-    drawn *= reach.z < kept ? 1.0 : 0.0;
+    // Where strands are thinner than that, some of them end, each by its own chance, so that the same share of the
+    // picture is covered. (Alpha to coverage would give all the same samples: together they would never hide a thing.)
+    drawn *= reach.z * drawn < half_width ? 1.0 : 0.0;
     ribbon_seen(before, here.xyz, after, drawn, pixel, up);
     out_light = vec4(0.0, 0.0, 0.0, 1.0);
     if (!CASTING) {
@@ -42,7 +40,6 @@ void main() {
         vec3 out_of = launch.xyz / max(length(launch.xyz), 1e-9);
         vec3 albedo = min(life_color(up, int(launch.w)).rgb * texelFetch(u_tint, slot, 0).rgb, 1.0);
         float open = mix(1.0 - u_root_shade, 1.0, smoothstep(0.0, 0.8, up));
-        out_light = vec4(hair_light(here.xyz, along, out_of, albedo, u_shine, u_shine_sharpness, open),
-                         cover < 0.999 ? cover + 0.25 * (reach.z / max(kept, 1e-9) - 0.5) : 1.0);
+        out_light = vec4(hair_light(here.xyz, along, out_of, albedo, u_shine, u_shine_sharpness, open), 1.0);
     }
 }

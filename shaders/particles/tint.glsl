@@ -6,7 +6,6 @@
 #include "lib/lighting.glsl"
 
 uniform sampler2D u_table;
-uniform float u_opacity;
 uniform float u_glow;
 uniform float u_lighting;
 uniform vec2 u_hue;                 // degrees
@@ -27,7 +26,8 @@ vec4 over_life(float over, int row) {
     int last = textureSize(u_table, 0).x - 1;
     float place = clamp(over, 0.0, 1.0) * float(last);
     int step = min(int(place), last - 1);
-    return mix(texelFetch(u_table, ivec2(step, row), 0), texelFetch(u_table, ivec2(step + 1, row), 0), place - float(step));
+    vec4 before = texelFetch(u_table, ivec2(step, row), 0), after = texelFetch(u_table, ivec2(step + 1, row), 0);
+    return mix(before, after, place - float(step));
 }
 
 // Turned about the axis of greys, by Rodrigues' formula.
@@ -67,7 +67,7 @@ vec3 light_on(vec3 place, vec3 normal, float reaching) {
 
 vec4 tint(vec3 place, vec3 normal, Qualities of, float opacity, out float reaching) {
     reaching = 1.0;
-    opacity = clamp(opacity * u_opacity, 0.0, 1.0);
+    opacity = clamp(opacity, 0.0, 1.0);
     if (COLOURING != BY_LOOK)
         return vec4(telling_color(of), opacity);
     vec3 color = own_color(of);

@@ -4,21 +4,23 @@
 // vec3 own_shade(vec3 color, uint identity): turned in hue and made brighter or darker by the particle's own chance.
 #include "particles/random.glsl"
 
-uniform sampler2D u_life;           // four rows of colour with opacity, one for each generation; then one of sizes
+uniform sampler2D u_table;          // see viewer/engine/particles/life_table.py
 uniform vec2 u_hue;                 // degrees
 uniform vec2 u_brightness;
 
-vec4 life_row(float part, float row) {
-    vec2 size = vec2(textureSize(u_life, 0));
-    return texture(u_life, vec2((0.5 + clamp(part, 0.0, 1.0) * (size.x - 1.0)) / size.x, (row + 0.5) / size.y));
+vec4 life_row(float part, int row) {
+    float place = clamp(part, 0.0, 1.0) * float(textureSize(u_table, 0).x - 1);
+    int step = int(place), last = textureSize(u_table, 0).x - 1;
+    vec4 before = texelFetch(u_table, ivec2(step, row), 0);
+    return mix(before, texelFetch(u_table, ivec2(min(step + 1, last), row), 0), place - float(step));
 }
 
 vec4 life_color(float part, int generation) {
-    return life_row(part, float(clamp(generation, 0, 3)));
+    return vec4(life_row(part, 1 + clamp(generation, 0, 3)).rgb, life_row(part, 0).g);
 }
 
 float life_size(float part) {
-    return life_row(part, 4.0).r;
+    return life_row(part, 0).r;
 }
 
 // Turned about the axis of greys, by Rodrigues' formula.

@@ -17,8 +17,7 @@ from viewer.engine.scene import Geometry, SceneError
 from viewer.engine.stage import Stage
 
 MIB = 2**20
-NUMBERS = ("alive", "emitted", "died", "collisions", "children", "refused", "kinetic_energy", "potential_energy",
-           "fastest")
+NUMBERS = ("alive", "emitted", "died", "collisions", "children", "kinetic_energy", "potential_energy", "fastest")
 # A walk of which moments can be kept; what it does is counted.
 KEPT_WALK = packs.WALK.replace("    def draw(self):", '''    def steered_by(self):
         return self.params.stride
@@ -347,6 +346,8 @@ def test_a_snapshot_that_fails_says_so_and_the_scene_goes_on(make_stage: MakeSta
     np.testing.assert_array_equal(stage.pixels(), other.pixels())
     if frame:
         stage.seek(40)
+        with pytest.raises(SceneError, match="no paper left"):
+            stage.seek(20)      # on the way from frame 0
         stage.seek(20)
         other.seek(20)
         assert stage.scene.place == other.scene.place       # type: ignore[attr-defined]
@@ -371,14 +372,14 @@ def test_a_restore_that_fails_says_so_and_leaves_a_scene_that_draws(make_stage: 
 
 
 def test_a_restore_that_fails_halfway_does_not_stay(make_stage: MakeStage) -> None:
-    """Rather than show what is half one moment and half another, the next look back starts anew or says so again."""
+    """Rather than show what is half one moment and half another, the scene is built anew where it stood."""
     source = SIZED_WALK.replace("        self.steps = int(steps)", '        raise ValueError("torn")')
     stage, other = make_stage(source, seed=3), make_stage(packs.WALK, seed=3)
     stage.seek(40)
     with pytest.raises(SceneError, match="failed in restore"):
         stage.seek(20)
-    stage.seek(stage.frame)
-    other.seek(stage.frame)
+    assert stage.frame == 40
+    other.seek(40)
     np.testing.assert_array_equal(stage.pixels(), other.pixels())
 
 

@@ -78,8 +78,8 @@ MakeTress = Callable[..., Stage]
 
 @pytest.fixture
 def tress(make_stage: MakeStage) -> MakeTress:
-    def make(frame: int = 0, *, seed: int = 3, size: tuple[int, int] = (96, 64), **params: object) -> Stage:
-        stage = make_stage(SCENE, name="tress", size=size, params={**FREE, **params}, seed=seed)
+    def make(frame: int = 0, *, seed: int = 3, picture: tuple[int, int] = (96, 64), **params: object) -> Stage:
+        stage = make_stage(SCENE, name="tress", size=picture, params={**FREE, **params}, seed=seed)
         stage.seek(frame)
         return stage
 
@@ -201,8 +201,8 @@ def test_all_that_is_remembered_comes_back_to_the_byte(tress: MakeTress) -> None
 @pytest.mark.parametrize("params", [{"blending": "additive"}, {"blending": "alpha", "emitter": "sphere"},
                                     {"collision": "stick", "ground": True}])
 def test_going_back_shows_the_same_picture(tress: MakeTress, params: dict[str, Any]) -> None:
-    straight = tress(45, rate=200.0, lifetime="0.3..0.6", size=(96, 64), **params).pixels()
-    stage = tress(70, rate=200.0, lifetime="0.3..0.6", size=(96, 64), **params)
+    straight = tress(45, rate=200.0, lifetime="0.3..0.6", **params).pixels()
+    stage = tress(70, rate=200.0, lifetime="0.3..0.6", **params)
     stage.pixels()
     stage.seek(45)
     assert np.array_equal(stage.pixels(), straight)
@@ -220,10 +220,15 @@ def test_trails_that_are_turned_on_midway_begin_there(tress: MakeTress) -> None:
 
 @pytest.mark.parametrize("pose", [{"distance": 0.01}, {"pitch": 89.0}, {"distance": 0.3, "target": (0.0, 0.5, 0.0)}])
 def test_no_picture_breaks_where_the_eye_is_among_them(tress: MakeTress, pose: dict[str, Any]) -> None:
-    stage = tress(40, rate=200.0, spread=180.0, trail_width=4.0, size=(64, 48))
+    stage = tress(40, rate=200.0, spread=180.0, trail_width=4.0, picture=(64, 48))
     for name, value in pose.items():
         stage.camera.stand({name: value})
-    assert np.isfinite(stage.picture.texture.size[0]) and stage.pixels().std() < 120.0
+    trails = trails_of(stage)
+    assert trails._drawing
+    for attachment in range(3):
+        seen = np.frombuffer(trails._drawing._ribbons._making.read(components=4, attachment=attachment, dtype="f4"),
+                             np.float32)
+        assert np.isfinite(seen).all()
 
 
 def strand_points(stage: Stage) -> NDArray[np.float32]:
@@ -278,6 +283,30 @@ def test_strands_are_the_same_each_time_and_at_each_frame(tress: MakeTress) -> N
     two.seek(12)
     assert np.array_equal(two.pixels(), picture)
     assert not np.array_equal(tress(12, seed=4, **STRANDS, gusts=0.5, turbulence=1.0).pixels(), picture)
+
+
+def test_strands_cast_a_shadow_and_hide_what_is_behind(tress: MakeTress) -> None:
+    many = {**STRANDS, "emitter_height": 1.0, "burst": 300, "size": "0.05..0.05", "lifetime": "0.1..0.1"}
+    empty = tress(0, **{**many, "burst": 0}).pixels()[..., :3].astype(int)
+    hairy = tress(0, **many).pixels()[..., :3].astype(int)
+    darker = (empty - hairy).mean(axis=2) > 4.0
+    assert np.abs(hairy - empty).max() > 40 and darker.mean() > 0.01
+
+
+def test_a_ribbon_is_as_wide_as_told_wherever_it_turns(tress: MakeTress) -> None:
+    stage = tress(40, rate=60.0, lifetime="5..5", spread=180.0, size="0.3..0.3", trail_width=0.5, trail_taper=0.0,
+                  trail_length=2.0, gravity=0.0, size_over_life="1")
+    trails = trails_of(stage)
+    assert trails._drawing
+    middle, side = (np.frombuffer(trails._drawing._ribbons._making.read(components=4, attachment=which, dtype="f4"),
+                                  np.float32).reshape(-1, 4) for which in range(2))
+    whole = side[:, 2] > 0.0
+    projection = stage.camera.projection(96 / 64)
+    across = np.hypot(side[whole, 0] / projection[0, 0], side[whole, 1] / projection[1, 1])
+    _, reach = reach_of(trails)
+    assert np.median(reach[:, 2]) == pytest.approx(0.5 * 0.5 * 0.3)
+    near = middle[whole, 3] > 0.075 / 0.05
+    assert near.sum() > 100 and np.allclose(across[near & (across > 0.07)], 0.075, rtol=2e-3)
 
 
 def test_memory_is_told_beforehand(tress: MakeTress) -> None:

@@ -31,6 +31,7 @@ class Variant:
     def __init__(self, gl: moderngl.Program, fixed_units: Mapping[str, int], blocks: Mapping[str, int]) -> None:
         self.gl = gl
         self.revision = -1
+        self.names = frozenset(gl)      # asking the program itself takes a search each time
         self.applied: dict[str, Uniform] = {}
         for name, unit in fixed_units.items():
             if name in gl:
@@ -42,7 +43,7 @@ class Variant:
     def apply(self, uniforms: Mapping[str, Uniform], place: str) -> None:
         """Set the uniforms that this program has and that changed; raises ShaderError for a wrong type."""
         for name, value in uniforms.items():
-            if name not in self.gl or self.applied.get(name) == value:
+            if name not in self.names or self.applied.get(name) == value:
                 continue
             try:
                 self.gl[name] = value

@@ -22,7 +22,7 @@ class Rewind:
     """Snapshots by frame, ever farther apart as they fill ``most_bytes``.
 
     They are of frames that were played from the beginning with what steers the simulation, the ``key``, staying
-    the same: once it changes, nothing is kept or found until the next beginning.
+    the same: once it changes, nothing is kept until the next beginning, or until a moment from before is found again.
     """
 
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
@@ -33,6 +33,7 @@ class Rewind:
         """Keep nothing of what was."""
         self._kept: dict[int, Snapshot] = {}
         self._key: Hashable = None
+        self._unbroken = False      # whether the frame now played follows from those that are kept
         self._stride = SHORTEST_STRIDE
 
     def begin(self, key: Hashable) -> None:
@@ -40,10 +41,12 @@ class Rewind:
         if key != self._key:
             self.forget()
             self._key = key
+        self._unbroken = True
 
     def is_due(self, frame: int, key: Hashable) -> bool:
-        """Whether a snapshot of ``frame`` would be kept."""
-        return key == self._key and frame % self._stride == 0 and frame not in self._kept
+        """Whether a snapshot of ``frame``, which has just been played, would be kept."""
+        self._unbroken = self._unbroken and key == self._key
+        return self._unbroken and frame % self._stride == 0 and frame not in self._kept
 
     def keep(self, frame: int, snapshot: Snapshot) -> None:
         """Keep a snapshot; where there are too many, every other goes."""
@@ -54,8 +57,9 @@ class Rewind:
             self._widen()
 
     def before(self, frame: int, key: Hashable) -> tuple[int, Snapshot] | None:
-        """The last frame not after ``frame`` that is kept, and its snapshot."""
+        """The last frame not after ``frame`` that is kept, and its snapshot: to go on from there."""
         frames = [kept for kept in self._kept if kept <= frame] if key == self._key else []
+        self._unbroken = self._unbroken or bool(frames)
         return (max(frames), self._kept[max(frames)]) if frames else None
 
     @property

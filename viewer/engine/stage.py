@@ -297,7 +297,11 @@ class Stage:
             self._exchange(self.scene_class, self.params, frame)
             return
         moment, snapshot = kept
-        self._off_screen("failed in restore", lambda: self.scene.restore(snapshot))
+        try:
+            self._off_screen("failed in restore", lambda: self.scene.restore(snapshot))
+        except DemoscopeError:
+            self._exchange(self.scene_class, self.params, self.clock.frame)     # it may be halfway between two moments
+            raise
         self._go_to(moment)
         self._play_to(frame)
 

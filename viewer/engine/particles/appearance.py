@@ -16,7 +16,8 @@ from viewer.engine.program import Program
 
 UNSEEN = 65535
 TABLE_UNIT = len(MOVING) + len(LASTING)
-OUTPUTS = {"place": (4, "f4"), "tint": (4, "f2"), "axes": (4, "f4"), "turn": (4, "f2"), "key": (1, "u2")}
+OUTPUTS = {"place": (4, "f4"), "tint": (4, "f2"), "turn": (4, "f2"), "key": (1, "u2"), "axes": (4, "f4")}
+KEY = list(OUTPUTS).index("key")
 BYTES_PER_PARTICLE = 16 + 8 + 16 + 8 + 2 + 2 + 4
 
 
@@ -32,9 +33,10 @@ class Appearance:
         size = pool.width, pool.height
         self.textures = {name: gpu.texture(size, components, dtype=dtype, label=f"sprites' {name}")
                          for name, (components, dtype) in OUTPUTS.items()}
-        self._target = gpu.framebuffer(list(self.textures.values()), label="appearance")
-        self._target.viewport = (0, 0, *size)
-        self._target.clear()
+        made = list(self.textures.values())
+        self._upright, self._slanted = (gpu.framebuffer(some, label="appearance") for some in (made[:-1], made))
+        self._slanted.viewport = (0, 0, *size)
+        self._slanted.clear()
         self._program = gpu.program("studio/screen.vert", "particles/appearance.frag",
                                     generated={"generated/look.glsl": lambda: look_constants(params)})
         self._pass = gpu.vertex_array(self._program)
@@ -54,15 +56,15 @@ class Appearance:
         self._program["u_table"] = TABLE_UNIT
         self._program["u_colouring_range"] = colouring_range(self.params)
         self._program["u_largest_point"] = self.largest_point
-        with drawing_into(self.gpu, self._target, (pool.width, rows)):
+        target = self._upright if self.params.billboard == "camera" else self._slanted      # who needs axes
+        with drawing_into(self.gpu, target, (pool.width, rows)):
             self._pass.render(vertices=3)
-        self._target.read_into(self._keys, (0, 0, pool.width, rows), 1, attachment=len(OUTPUTS) - 1, alignment=1,
-                               dtype="u2")
+        target.read_into(self._keys, (0, 0, pool.width, rows), 1, attachment=KEY, alignment=1, dtype="u2")
         self._put_in_order(self._keys[:pool.used])
 
     def bind(self, program: Program, first_unit: int = 0) -> None:
         """Let ``program`` read the textures as ``u_place`` and so on."""
-        for unit, name in enumerate(list(OUTPUTS)[:-1], first_unit):
+        for unit, name in enumerate((name for name in OUTPUTS if name != "key"), first_unit):
             self.textures[name].use(unit)
             program[f"u_{name}"] = unit
 

@@ -63,8 +63,11 @@ class Nursery:
         """Births as the schedule has them; fewer where there is no room."""
         self._birth["u_wave_reach"] = wave_reach
         for start in range(0, births.number, BATCH):
-            lived = births.lived - start * births.between
-            yield self._one_batch(min(BATCH, births.number - start), lived, births.between)
+            lived, number = births.lived - start * births.between, min(BATCH, births.number - start)
+            some = self._one_batch(number, lived, births.between)
+            yield some
+            if len(some.slots) < number:
+                break
 
     def from_parents(self, parents: NDArray[np.uint32]) -> Iterator[Newborn]:
         """A child for each slot in ``parents``."""

@@ -136,13 +136,15 @@ class Colliders:
 
     @property
     def thinnest(self) -> float:
-        """How thin the obstacle is where it is thinnest, in metres; of a mesh or formula, what its samples resolve."""
+        """How thin what is solid is at its thinnest, in metres; of a mesh or formula, what its samples resolve."""
         p = self.params
-        if p.obstacle == "none" or p.hollow:
-            return 1e9
         size = self._size()
+        if p.obstacle == "none" or (p.hollow and p.obstacle in ("sphere", "box")):
+            return 1e9
         if p.obstacle in ("mesh", "formula"):
             return self._sampled.field.cell * size[0] if self._sampled else 1e9
+        if p.hollow:        # the ring's hole, or the dents that are left of it
+            return max(2.0 * (size[0] - size[1]), 0.1 * size[1])
         return 2.0 * {"sphere": size[0], "box": min(size), "torus": size[1]}[p.obstacle]
 
     def _plane(self) -> tuple[float, float, float, float]:

@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.engine.declarations import choice, file, slider, toggle
+from viewer.engine.declarations import choice, color, file, slider, toggle
 from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
@@ -64,6 +64,8 @@ class EmitterParameters(Parameters):
     emitter_heading: float = slider(0.0, -180.0, 180.0, "How far the shape is turned around y, counter-clockwise seen "
                                     "from above", unit="degrees", group=GROUP, when="emitter!=ground")
     show_emitter: bool = toggle(False, "Draw the surface of the shape", group=GROUP, when="emitter!=point")
+    emitter_color: tuple[float, float, float] = color("#8c99a8", "Colour of that surface", group=GROUP,
+                                                      when="show_emitter")
 
 
 class Emitter:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from viewer.engine.declarations import choice, curve, file, gradient, integer, slider, toggle
@@ -23,8 +24,9 @@ BLENDINGS = {
     "additive": "Light adds up, as of fire and spray: nothing is hidden",
     "alpha": "It hides what lies behind, as smoke does: drawn from back to front"}
 COLOURINGS = {
-    "look": "Its own colour", "age": "How much of its life is over", "generation": "Whether it is a child, a grandchild ...",
-    "speed": "How fast it moves", "mass": "Its mass", "size": "Its diameter"}
+    "look": "Its own colour", "age": "How much of its life is over",
+    "generation": "Whether it is a child, a grandchild ...", "speed": "How fast it moves",
+    "mass": "Its mass", "size": "Its diameter"}
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
 GRADIENTS = ("color", *(f"{family}_color" for family in FAMILIES))
 
@@ -32,7 +34,7 @@ GRADIENTS = ("color", *(f"{family}_color" for family in FAMILIES))
 class LookParameters(Parameters):
     """Shape, colour and light of the sprites. The defaults are those of luminous water in the dark."""
 
-    billboard: str = choice("camera", BILLBOARDS, "How the polygon of a sprite lies in space", group=LOOK)
+    billboard: str = choice("velocity", BILLBOARDS, "How the polygon of a sprite lies in space", group=LOOK)
     stretch: float = slider(0.03, 0.0, 1.0, "It is as long as its way in so many seconds", unit="s", group=LOOK,
                             handy=(0.0, 0.2), when="billboard=velocity")
     sprite: str = choice("spot", SPRITES, "What is drawn on the polygon", group=LOOK)
@@ -44,7 +46,7 @@ class LookParameters(Parameters):
     size_over_life: LifeCurve = curve("0:0.7, 0.15:1, 1:1.15", 0.0, 4.0, "Size over life, times the diameter",
                                       group=LOOK)
     opacity_over_life: LifeCurve = curve("0:0.8, 0.08:1, 0.7:0.85, 1:0", 0.0, 1.0, "Opacity over life", group=LOOK)
-    opacity: float = slider(0.8, 0.0, 1.0, "Opacity, of all alike", group=LOOK)
+    opacity: float = slider(0.3, 0.0, 1.0, "Opacity, of all alike", group=LOOK)
     glow: float = slider(1.0, 0.01, 100.0, "How many times as bright", logarithmic=True, group=LOOK)
     lighting: float = slider(0.0, 0.0, 1.0, "From its own light, 0, to that of the studio with its shadows, 1",
                              group=LOOK)
@@ -56,7 +58,7 @@ class LookParameters(Parameters):
                                     logarithmic=True, group=TEACHING, when="colouring=speed")
     outlines: bool = toggle(False, "Show the edges of the polygons", group=TEACHING)
     overdraw: bool = toggle(False, "Show how many sprites are drawn over each pixel", group=TEACHING)
-    overdraw_most: int = integer(32, 1, 2048, "Sprites on a pixel at the bright end of the scale", logarithmic=True,
+    overdraw_most: int = integer(16, 1, 2048, "Sprites on a pixel at the bright end of the scale", logarithmic=True,
                                  group=TEACHING, when="overdraw")
 
 
@@ -104,5 +106,10 @@ def look_constants(params: Any) -> str:
     flags = {"HIDES": is_sorted(params), "SOFT": params.softness > 0.0, "LIT": plain and params.lighting > 0.0,
              "TURNS": turns(params), "SPINS": any(params.spin), "OUTLINED": params.outlines,
              "COUNTED": params.overdraw}
-    lines = [f"const int {name} = {value};" for name, value in numbers.items()]
-    return "\n".join([*lines, *(f"const bool {name} = {str(bool(value)).lower()};" for name, value in flags.items()), ""])
+    return constants(numbers) + constants(flags)
+
+
+def constants(values: Mapping[str, int | bool]) -> str:
+    """GLSL that names them."""
+    kinds = {name: "bool" if isinstance(value, bool) else "int" for name, value in values.items()}
+    return "".join(f"const {kinds[name]} {name} = {str(value).lower()};\n" for name, value in values.items())

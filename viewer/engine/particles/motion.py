@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import moderngl
 
 from viewer.engine.field_samples import drawing_into
 from viewer.engine.gpu import Gpu
-from viewer.engine.particles.cascade import cascade_constants, has_children
+from viewer.engine.particles.cascade import FAMILIES, cascade_constants, has_children, moments
 from viewer.engine.particles.colliders import Colliders
 from viewer.engine.particles.forces import Forces
 from viewer.engine.particles.pool import Pool
@@ -74,8 +75,9 @@ class Motion:
 
     def _may_pass_through(self) -> bool:
         """Whether something could be so fast as to jump over the thinnest collider within a step."""
-        names = ("speed", "children_speed", "grandchildren_speed", "great_grandchildren_speed")
-        launch = sum(self.params.get(name)[1] for name in names)
-        life = max(self.params.get(name.replace("speed", "lifetime"))[1] for name in names)
+        p: Any = self.params
+        born = ["", *(f"{family}_" for family, when in zip(FAMILIES, moments(p), strict=True) if when != "never")]
+        launch = sum(p.get(f"{family}speed")[1] for family in born)
+        life = sum(p.get(f"{family}lifetime")[1] for family in born)
         fastest = launch + life * self.forces.greatest_acceleration()
         return bool(fastest * self.step_seconds > self.colliders.thinnest)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 import moderngl
@@ -115,7 +115,8 @@ class Paths:
 
 
 @contextmanager
-def drawing_at(gpu: Gpu, target: moderngl.Framebuffer, corner: tuple[int, int], size: tuple[int, int]) -> Iterator[None]:
+def drawing_at(gpu: Gpu, target: moderngl.Framebuffer, corner: tuple[int, int],
+               size: tuple[int, int]) -> Iterator[None]:
     """Draw a block of texels, in colour whatever is under way, and go back to the framebuffer before."""
     before, casting = gpu.context.fbo, gpu.casting_shadows
     target.viewport = (*corner, *size)
@@ -128,6 +129,3 @@ def drawing_at(gpu: Gpu, target: moderngl.Framebuffer, corner: tuple[int, int], 
         gpu.casting_shadows = casting
         if before:
             before.use()
-
-
-Bind = Callable[[Program], None]

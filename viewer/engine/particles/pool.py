@@ -15,7 +15,7 @@ from viewer.engine.program import Program
 
 LASTING = ("nature", "origin", "launch")        # written when a particle is born
 MOVING = ("motion", "velocity")                 # written in each step, from one texture into another
-BYTES_PER_PARTICLE = 16 * (len(LASTING) + 2 * len(MOVING)) + 2 + 2 + 1 + 8
+BYTES_PER_PARTICLE = 16 * (len(LASTING) + 2 * len(MOVING)) + 2 + 2 + 1 + 8 + 4
 LIVES, DIED, STRUCK, CHILDREN_SHIFT = 1, 2, 4, 3    # of a status, see particles/step.frag
 
 
@@ -27,11 +27,12 @@ class PoolSnapshot:
     texels: dict[str, NDArray[np.float32]]
     alive: NDArray[np.bool_]
     serial: NDArray[np.int64]
+    begun: NDArray[np.int32]
 
     @property
     def nbytes(self) -> int:
         """How much memory it takes."""
-        arrays = (*self.texels.values(), self.alive, self.serial)
+        arrays = (*self.texels.values(), self.alive, self.serial, self.begun)
         return sum(array.nbytes for array in arrays)
 
 
@@ -39,7 +40,8 @@ class Pool:
     """``capacity`` slots, ``width`` in a row of the textures, the lowest free ones taken first.
 
     ``used`` slots have been taken at one time or another; only their rows are computed. ``alive`` (capacity,)
-    bool and ``serial`` (capacity,) int64, the number that stays with a particle, tell who lives where.
+    bool, ``serial`` (capacity,) int64, the number that stays with a particle, and ``begun`` (capacity,) int32, the
+    step that it was born in, tell who lives where.
     """
 
     def __init__(self, gpu: Gpu, capacity: int, bytes_beside: int = 0) -> None:
@@ -50,6 +52,7 @@ class Pool:
         self.used = 0
         self.alive = np.zeros(capacity, bool)
         self.serial = np.zeros(capacity, np.int64)
+        self.begun = np.zeros(capacity, np.int32)
         self._status = np.zeros(self.width * self.height, np.uint16)
         self._build()
         self.clear()
@@ -131,13 +134,16 @@ class Pool:
     def snapshot(self) -> PoolSnapshot:
         """All that lives, to be put back by ``restore``."""
         texels = {name: self._rows_of(name) for name in (*MOVING, *LASTING)}
-        return PoolSnapshot(self.used, texels, self.alive[:self.used].copy(), self.serial[:self.used].copy())
+        taken = slice(self.used)
+        return PoolSnapshot(self.used, texels, self.alive[taken].copy(), self.serial[taken].copy(),
+                            self.begun[taken].copy())
 
     def restore(self, snapshot: PoolSnapshot) -> None:
         """Put everything back to what it was."""
         self.clear()
         self.used = snapshot.used
         self.alive[:self.used], self.serial[:self.used] = snapshot.alive, snapshot.serial
+        self.begun[:self.used] = snapshot.begun
         for name, texels in snapshot.texels.items():
             if len(texels):
                 self.textures[name].write(texels, (0, 0, self.width, self.rows))

@@ -8,8 +8,9 @@ import moderngl
 import numpy as np
 
 from viewer.engine.gpu import Gpu
-from viewer.engine.particles.paths import Bind, Blocks, drawing_at
+from viewer.engine.particles.paths import Blocks, drawing_at
 from viewer.engine.particles.pool import Pool
+from viewer.engine.program import Program
 
 MOST_POINTS = 2**19         # that are made and drawn at a time: what bounds the memory they take
 SEEN = ("middle", "side", "light")
@@ -39,7 +40,7 @@ class Ribbons:
         slots = self.band_rows * pool.width
         self._drawn = gpu.vertex_array(self._draw, index=gpu.buffer(quads(slots, points), label="ribbons' quads"))
 
-    def draw(self, bind: Bind, flags: int = moderngl.DEPTH_TEST) -> None:
+    def draw(self, bind: Callable[[Program], None], flags: int = moderngl.DEPTH_TEST) -> None:
         """Draw all ribbons; ``bind`` gives the making program what it reads, ``flags`` is the state to draw in."""
         for first in range(0, self.pool.rows, self.band_rows):
             rows = min(self.band_rows, self.pool.rows - first)

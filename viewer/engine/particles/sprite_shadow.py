@@ -8,6 +8,7 @@ import moderngl
 
 from viewer.engine.gpu import Gpu
 from viewer.engine.particles.life_table import LifeTable
+from viewer.engine.particles.look import constants, look_constants
 from viewer.engine.particles.pool import Pool
 from viewer.engine.shadow import DEPTH_SIZE
 
@@ -21,7 +22,8 @@ class SpriteShadow:
     def __init__(self, gpu: Gpu, pool: Pool, table: LifeTable, params: Any) -> None:
         self.gpu, self.pool, self.table, self.params = gpu, pool, table, params
         self._program = gpu.program("particles/sprite_shadow.vert", "particles/sprite_shadow.frag",
-                                    generated={"generated/sprite_shadow.glsl": lambda: slot_constants(pool)})
+                                    generated={"generated/look.glsl": lambda: look_constants(params),
+                                               "generated/sprite_shadow.glsl": lambda: slot_constants(pool)})
         self._discs = gpu.vertex_array(self._program, mode=moderngl.POINTS)
 
     def cast(self) -> None:
@@ -41,4 +43,4 @@ class SpriteShadow:
 
 def slot_constants(pool: Pool) -> str:
     """How a slot's number becomes its place in the textures."""
-    return f"const int WIDTH_MASK = {pool.width - 1};\nconst int WIDTH_BITS = {pool.width.bit_length() - 1};"
+    return constants({"WIDTH_MASK": pool.width - 1, "WIDTH_BITS": pool.width.bit_length() - 1})

@@ -104,12 +104,13 @@ class Sprites:
 
     @property
     def shape(self) -> str:
-        """What each sprite of the last picture was drawn as: a point, a triangle around its circle, or a square."""
+        """What each sprite of the last picture was drawn as: a point, a square, or a triangle around its circle, which
+        has more pixels but is half the work where sprites are small."""
         params = self.params
         if params.billboard == "camera" and not params.outlines and not self.appearance.needs_polygons:
             return "point"
-        whole = params.outlines or params.overdraw or params.sprite == "texture"
-        return "square" if whole else "triangle"
+        fills_square = params.outlines or params.overdraw or params.sprite == "texture"
+        return "square" if fills_square or params.billboard == "camera" else "triangle"
 
     def _array(self, shape: str) -> VertexArray:
         """The vertex array for a shape, linked when first wanted."""
@@ -128,6 +129,5 @@ class Sprites:
         lit = params.lighting > 0.0 and params.colouring == "look"
         shaded = (params.sprite == "ball" or (params.sprite == "puff" and lit)) and not params.overdraw
         turned = params.sprite in OF_EACH_ITS_OWN or params.billboard == "tumble" or look.turns(params)
-        flags = {"SHADED": shaded, "USES_TURN": shaded or turned}
-        lines = [f"const bool {name} = {str(bool(value)).lower()};" for name, value in flags.items()]
-        return "\n".join([f"const int SHAPE = {list(SHAPES).index(shape)};", *lines, slot_constants(self.system.pool), ""])
+        return slot_constants(self.system.pool) + look.constants(
+            {"SHAPE": list(SHAPES).index(shape), "SHADED": shaded, "USES_TURN": shaded or turned})

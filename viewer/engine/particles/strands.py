@@ -1,4 +1,4 @@
-"""Strands: hair, fur and grass, each the path of a particle's whole life, after Reeves 1983 and Reeves and Blau 1985."""
+"""Strands: hair, fur and grass, each the path of a particle's whole life (Reeves 1983, Reeves and Blau 1985)."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from viewer.engine.particles.paths import EVER, NEVER, Paths, drawing_at
 from viewer.engine.particles.pool import MOVING
 from viewer.engine.particles.ribbons import Ribbons
 from viewer.engine.particles.system import ParticleSystem
-from viewer.engine.particles.trails import COLORS_UNIT, PATHS_UNIT, REACH_UNIT, Reach
+from viewer.engine.particles.trails import PATHS_UNIT, REACH_UNIT, Reach
 from viewer.engine.program import Program
 from viewer.engine.shadow import DEPTH_SIZE
 
 SHADOW_POINTS, FEWEST_POINTS = 6, 5     # are enough for a shadow, and for a strand that is short in the picture
-SHORTEST = 9.0                          # pixels: how long a piece of a strand between two points at least is
-SAMPLE_ALPHA_TO_COVERAGE = 0x809E       # GL's number for it, which moderngl has no name for
+SHORTEST = 10.0                         # pixels: how long a piece of a strand between two points at least is
 SLOPE_TO_HEIGHT = 1.6                   # the picture's height, for a slope of 1, about
 
 
@@ -40,7 +39,7 @@ class Strands:
         self._build_sides()
         self._shadow_apart = max(1, (self.points - 1) // (SHADOW_POINTS - 1))
         self._ribbons: dict[tuple[int, bool], Ribbons] = {}
-        self._slope = np.inf    # how long the longest strand is, from where the camera stands, over its distance
+        self._slope = np.inf    # how long a strand is, over its distance from the camera
         self._grown: Hashable = None
         self._reached: Hashable = None
         self.passes = 0         # how often strands grew anew
@@ -61,18 +60,13 @@ class Strands:
             self.reach.find()
             self._reached = key, self.params.revision
         away = float(np.linalg.norm(np.array([0.0, self.params.emitter_height, 0.0, 1.0]) @ view[:, :3]))
-        self._slope = self._longest() / max(away, 1e-6)
+        self._slope = self._common_length() / max(away, 1e-6)
 
     def draw(self) -> None:
         """Draw all strands, or their shadow."""
         if self.pool.rows:
             casting = self.gpu.casting_shadows
-            ribbons = self._ribbons_for(self._shadow_apart if casting else self._apart(), casting)
-            self.gpu.context.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
-            try:
-                ribbons.draw(self._bind)
-            finally:
-                self.gpu.context.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+            self._ribbons_for(self._shadow_apart if casting else self._apart(), casting).draw(self._bind)
 
     def _grow(self) -> None:
         self.passes += 1
@@ -92,7 +86,7 @@ class Strands:
         self.pool.bind(program, ("launch",))
         self.paths.bind(program, PATHS_UNIT)
         self.reach.bind(program, REACH_UNIT)
-        self.reach.colors.bind(program, COLORS_UNIT)
+        self.reach.bind_table(program)
 
     def _build_sides(self) -> None:
         """Two states to step between, as a pool has them."""
@@ -104,10 +98,9 @@ class Strands:
         self._rooting = gpu.framebuffer([*self._sides[0].values(), self._origin], label="strands' roots")
         self._steps = [gpu.framebuffer([*side.values(), status], label="strands' step") for side in self._sides]
 
-    def _longest(self) -> float:
-        """About how long the longest strand is, in metres."""
-        fastest, oldest = self.params.speed[1], self.params.lifetime[1]
-        way = float(fastest * oldest + 0.5 * self.system.forces.greatest_acceleration() * oldest**2)
+    def _common_length(self) -> float:
+        """About how long strands are, in metres."""
+        way = float(np.mean(self.params.speed) * np.mean(self.params.lifetime))
         return min(way, self.params.trail_length) if self.params.trail_length else way
 
     def _apart(self) -> int:
@@ -123,7 +116,7 @@ class Strands:
 
     def _made_ribbons(self, apart: int, casting: bool) -> Ribbons:
         constants = (f"const bool CASTING = {str(casting).lower()};\nconst int POINTS_APART = {apart};\n"
-                     f"const float SHADOW_PIXELS = {DEPTH_SIZE:.1f}, THINNEST = {1.5 if casting else 1.0};\n")
+                     f"const float SHADOW_PIXELS = {DEPTH_SIZE:.1f}, THINNEST = {1.5 if casting else 0.9};\n")
         points = -(-(self.points - 1) // apart) + 1
         return Ribbons(self.gpu, self.pool, points, "particles/strand_ribbon.frag", "particles/strand.frag", {
             "generated/paths.glsl": self.paths.constants, "generated/strand.glsl": lambda: constants})

@@ -18,7 +18,7 @@ from viewer.engine.particles.colliders import ColliderParameters, Colliders
 from viewer.engine.particles.emitter import Emitter
 from viewer.engine.particles.forces import ForceParameters, Forces
 from viewer.engine.particles.motion import Motion
-from viewer.engine.particles.pool import CHILDREN_SHIFT, DIED, LIVES, STRUCK, Pool, PoolSnapshot
+from viewer.engine.particles.pool import CHILDREN_SHIFT, DIED, LASTING, LIVES, MOVING, STRUCK, Pool, PoolSnapshot
 from viewer.engine.particles.qualities import EmissionParameters, QualityParameters
 from viewer.engine.particles.schedule import Births, Schedule, ScheduleState
 from viewer.engine.rewind import Snapshot
@@ -30,7 +30,7 @@ class ParticleParameters(EmissionParameters, QualityParameters, ForceParameters,
     """All that decides how particles move."""
 
 
-SHOWING = ("show_emitter", "obstacle_color", "spin", "hue", "brightness",
+SHOWING = ("show_emitter", "emitter_color", "obstacle_color", "spin", "hue", "brightness",
            *(f"{family}_color" for family in FAMILIES))     # these change the picture alone
 STEERING = tuple(name for name in ParticleParameters.declared if name not in SHOWING)
 
@@ -188,11 +188,14 @@ class ParticleSystem:
     def arrays(self) -> Geometry:
         """The living, in the order of their slots: position and velocity (n, 3), the rest (n,)."""
         alive = np.flatnonzero(self.pool.alive[:self.pool.used])
-        texels = {name: rows[alive] for name, rows in self.pool.read("motion", "velocity", "nature", "launch").items()}
-        motion, nature = texels["motion"], texels["nature"]
+        texels = {name: rows[alive] for name, rows in self.pool.read(*MOVING, *LASTING).items()}
+        nature = texels["nature"]
+        # Counted in steps: what a long life has left to live, in single precision, would be off by ever more.
+        steps = np.zeros(len(alive)) if self.holds_still else self.steps - self.pool.begun[alive]
+        age = (steps * FRAME_SECONDS + texels["origin"][:, 3]).astype(np.float32)
         return {
-            "position": motion[:, :3].copy(), "velocity": texels["velocity"][:, :3].copy(),
-            "age": nature[:, 0] - motion[:, 3], "life": nature[:, 0].copy(), "size": nature[:, 1].copy(),
+            "position": texels["motion"][:, :3].copy(), "velocity": texels["velocity"][:, :3].copy(),
+            "age": np.minimum(age, nature[:, 0]), "life": nature[:, 0].copy(), "size": nature[:, 1].copy(),
             "mass": nature[:, 2].copy(), "generation": texels["launch"][:, 3].astype(np.int32),
             "seed": self.pool.serial[alive]}
 
@@ -226,6 +229,7 @@ class ParticleSystem:
             self.tally.emitted += emitted
             self.tally.refused += due.number - emitted
         for some in newborn:
+            self.pool.begun[some.slots] = self.steps
             self.tally.died += len(some.slots) - int(np.count_nonzero(some.alive))
             self.tally.collisions += int(np.count_nonzero(some.status & STRUCK))
         return newborn
@@ -250,4 +254,7 @@ class ParticleSystem:
             return np.empty(0, np.uint32)
         brooding = np.flatnonzero(status >> CHILDREN_SHIFT)
         who = brooding if slots is None else slots[brooding]
-        return np.repeat(who, status[brooding] >> CHILDREN_SHIFT).astype(np.uint32)
+        until = np.cumsum(status[brooding] >> CHILDREN_SHIFT, dtype=np.int64)
+        room = self.pool.capacity - int(np.count_nonzero(self.pool.alive))
+        self.tally.refused += max(0, int(until[-1]) - room) if len(until) else 0
+        return np.repeat(who, np.diff(np.minimum(until, room), prepend=0)).astype(np.uint32)

@@ -14,15 +14,15 @@ from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.declarations import integer, slider, toggle
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
+from viewer.engine.particles.life_table import LifeTable
 from viewer.engine.particles.paths import Paths, drawing_at
 from viewer.engine.particles.ribbons import Ribbons
 from viewer.engine.particles.system import ParticleSystem
-from viewer.engine.particles.trail_colors import TrailColors
 from viewer.engine.program import Program
 
 GROUP = "Trails"
 LATE = 0.3 * FRAME_SECONDS
-PATHS_UNIT, REACH_UNIT, COLORS_UNIT = 5, 7, 10
+PATHS_UNIT, REACH_UNIT, TABLE_UNIT = 5, 7, 10
 
 
 class TrailParameters(Parameters):
@@ -33,11 +33,11 @@ class TrailParameters(Parameters):
     trail_length: float = slider(0.0, 0.0, 20.0, "Length along the path; 0: moving particles have none, and strands "
                                  "their whole path", unit="m", group=GROUP, handy=(0.0, 3.0))
     trail_width: float = slider(1.0, 0.0, 4.0, "Width at its head or root, in diameters of the particle", group=GROUP)
-    trail_taper: float = slider(1.0, 0.0, 1.0, "How much of the width is lost towards the other end", group=GROUP)
+    trail_taper: float = slider(0.8, 0.0, 1.0, "How much of the width is lost towards the other end", group=GROUP)
     trail_opacity: float = slider(0.8, 0.0, 1.0, "Opacity at the head", group=GROUP, when="!strands")
-    trail_seconds: float = slider(1.0, 0.05, 10.0, "How far back trails remember", unit="s", rebuild=True, group=GROUP,
+    trail_seconds: float = slider(0.8, 0.05, 10.0, "How far back trails remember", unit="s", rebuild=True, group=GROUP,
                                   logarithmic=True, when="!strands")
-    trail_points: int = integer(24, 4, 64, "Points that a trail is drawn through", rebuild=True, group=GROUP,
+    trail_points: int = integer(26, 4, 64, "Points that a trail is drawn through", rebuild=True, group=GROUP,
                                 when="!strands")
     strand_points: int = integer(12, 4, 48, "Points that a strand is drawn through", rebuild=True, group=GROUP,
                                  when="strands")
@@ -176,7 +176,7 @@ class Reach:
         self._textures = {name: gpu.texture(size, 4, dtype="f4", label=f"ribbons' {name}") for name in self.NAMES}
         self.target = gpu.framebuffer(list(self._textures.values()), label="ribbons' reach")
         self.target.clear()
-        self.colors = TrailColors(gpu, params)
+        self.table = LifeTable(gpu, params)
         self.program = gpu.program("studio/screen.vert", finding, generated={"generated/paths.glsl": paths.constants})
         self._found = gpu.vertex_array(self.program)
 
@@ -184,7 +184,8 @@ class Reach:
         """Follow the particles and the parameters."""
         self.pool.bind(self.program)
         self.paths.bind(self.program, PATHS_UNIT)
-        self.colors.bind(self.program, COLORS_UNIT)
+        self.table.prepare()
+        self.bind_table(self.program)
         with drawing_at(self.gpu, self.target, (0, 0), (self.pool.width, self.pool.rows)):
             self._found.render(vertices=3)
 
@@ -193,6 +194,11 @@ class Reach:
         for unit, (name, texture) in enumerate(self._textures.items(), first_unit):
             texture.use(unit)
             program[f"u_{name}"] = unit
+
+    def bind_table(self, program: Program) -> None:
+        """Let ``program`` read ``particles/trail_colors.glsl``'s table of what changes over a life."""
+        self.table.texture.use(TABLE_UNIT)
+        program["u_table"] = TABLE_UNIT
 
 
 def trail_bytes(params: Any) -> int:
