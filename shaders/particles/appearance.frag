@@ -162,8 +162,8 @@ void main() {
     float radius = 0.5 * one.diameter * scale;
     Polygon polygon = BILLBOARD == FOLLOWS_VELOCITY ? stretched(one, scale) :
                       BILLBOARD == TUMBLES ? tumbling(one, scale) : facing_camera(one, scale);
-    if (SOFT)                                   // what the eye passes through fades away before
-        one.opacity *= clamp((away - nearest()) / (u_softness + 0.5 * one.diameter), 0.0, 1.0);
+    float before_eye = away - nearest() - 0.5 * one.diameter;   // what the eye passes through fades away before
+    one.opacity *= clamp(before_eye / (u_softness + 0.5 * one.diameter + 1e-6), 0.0, 1.0);
     float reaching;
     out_tint = tint(one.place, polygon.normal, qualities_of(one, slot), one.opacity, reaching);
     out_place = vec4(polygon.middle, depth_at(away), radius);

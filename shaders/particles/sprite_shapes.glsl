@@ -106,7 +106,8 @@ vec4 star(vec2 place) {
 vec4 ring(vec2 place) {
     float around = dot(place, place), radius = sqrt(around);
     float skin = 0.05 + 0.75 * squared(squared(around)) * around;
-    vec2 window = place - vec2(-0.36, 0.44), lower = place - vec2(0.42, -0.50);
+    vec2 upright = place.x * v_axis + place.y * vec2(-v_axis.y, v_axis.x);      // the window does not turn with it
+    vec2 window = upright - vec2(-0.36, 0.44), lower = upright - vec2(0.42, -0.50);
     float mirrored = squared(max(1.0 - 14.0 * dot(window, window), 0.0));
     mirrored += 0.35 * squared(max(1.0 - 22.0 * dot(lower, lower), 0.0));
     vec3 film = 1.0 + 0.35 * cos(TWO_PI * (1.3 * around + v_own.y + 0.15 * place.y + vec3(0.0, 0.33, 0.67)));

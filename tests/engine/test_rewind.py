@@ -339,7 +339,7 @@ def test_a_snapshot_that_fails_says_so_and_the_scene_goes_on(make_stage: MakeSta
     source = SIZED_WALK.replace("        self.kept =", f"        if self.steps == {frame}:\n"
                                 '            raise ValueError("no paper left")\n        self.kept =')
     stage, other = make_stage(source, seed=3), make_stage(packs.WALK, seed=3)
-    with pytest.raises(SceneError, match="failed in snapshot.*no paper left"):
+    with pytest.raises(SceneError, match=r"failed in snapshot.*no paper left"):
         stage.seek(40)
     assert stage.frame == frame
     other.seek(frame)
@@ -360,7 +360,7 @@ def test_a_restore_that_fails_says_so_and_leaves_a_scene_that_draws(make_stage: 
     stage, other = make_stage(source, seed=3), make_stage(packs.WALK, seed=3)
     stage.seek(40)
     stage.set(height=4.0)
-    with pytest.raises(SceneError, match="failed in restore.*torn"):
+    with pytest.raises(SceneError, match=r"failed in restore.*torn"):
         stage.seek(20)
     assert stage.frame == 40
     other.seek(40)

@@ -226,7 +226,7 @@ def test_a_seed_is_given_once_and_stays(shared: Stage) -> None:
         found = played(shared, frame)
         check_books(shared, found)
         assert not np.isin(found["seed"], gone).any()
-        if known:
+        if known and len(known["seed"]):
             same, here, there = np.intersect1d(found["seed"], known["seed"], return_indices=True)
             for name in ("life", "size", "mass", "generation"):
                 np.testing.assert_array_equal(found[name][here], known[name][there])
@@ -323,13 +323,6 @@ def test_an_impact_brings_children_there(shared: Stage) -> None:
     assert np.abs(found["position"][children, 1]).max() < 0.08
     speed = np.linalg.norm(found["velocity"][children].astype(np.float64), axis=1)
     assert (found["velocity"][children, 1] / speed > math.cos(math.radians(31.0)) - 0.15).all()
-    shared.seek(120)
-    assert tally(shared).children == 3 * (tally(shared).collisions - struck_by(shared))
-
-
-def struck_by(stage: Stage) -> int:
-    """How many of the collisions are the children's own: these have none themselves."""
-    return tally(stage).collisions - tally(stage).children // 3
 
 
 @pytest.mark.parametrize("inherit", [0.0, 0.15, 1.0])
@@ -362,11 +355,14 @@ def test_grandchildren_need_children(shared: Stage) -> None:
 
 
 def test_more_children_than_there_is_room_for_are_refused(shared: Stage) -> None:
-    """Thousands each from thousands at once: as many as fit are born, and all the others are counted."""
+    """Thousands each from thousands at once: as many as fit are born, and all the others are counted.
+
+    Who dies gives up its place only after its children have come.
+    """
     found = born(shared, 3, burst=4000, lifetime=(0.02, 0.03), children_when="death", children=(4000.0, 4000.0),
                  children_lifetime=(9.0, 9.0))
     check_books(shared, found)
-    assert len(found["age"]) == 4096
+    assert len(found["age"]) == 4096 - 4000
     assert tally(shared).children + tally(shared).refused == 4000 * 4000
 
 
@@ -377,9 +373,6 @@ def test_more_children_than_there_is_room_for_are_refused(shared: Stage) -> None
 def test_a_wave_emits_from_a_ring_evenly_by_area(shared: Stage, source: str) -> None:
     """On a sphere that is lifted and leans: where it has just come, and nowhere else."""
     speed, width, radius = 2.0, 0.6, 1.5
-    set_anew(shared, {"emitter": "sphere", "emitter_size": radius, "emit_from": source, "emitter_height": 2.0,
-                      "emitter_tilt": 40.0, "wave_speed": speed, "wave_width": width, "rate": 60_000.0,
-                      "gravity": 0.0})
     set_anew(shared, {"emitter": "sphere", "emitter_size": radius, "emit_from": source, "emitter_height": 2.0,
                       "emitter_tilt": 40.0, "wave_speed": speed, "wave_width": width, "rate": 6000.0,
                       "gravity": 0.0})
@@ -439,9 +432,8 @@ def test_the_ends_of_every_range_are_survived(only_context: moderngl.Context) ->
             "spread": 60.0, "ground": True, "obstacle": "torus", "turbulence": 2.0, "wind": 2.0, "gusts": 0.5,
             "drag": (0.01, 0.5), "mass": (0.5, 2.0), "attractor": "point", "vortex": 1.0, "emitter": "sphere",
             "wave_speed": 0.5, "burst": 20, "burst_every": 0.1, "children_when": "collision"}
-    names = {name for name, _ in limits()}
-    assert {"lifetime", "speed", "mass", "drag", "rate", "gravity", "children", "attractor_core", "seed"} - names <= {
-        "seed"}
+    assert {"lifetime", "speed", "rate", "gravity", "children", "count"} <= {name for name, _ in limits()}
+    refused: list[str] = []
     with stage_of_particles(**busy) as stage:
         for name, value in limits():
             if name in ("count", "warm_up"):
@@ -451,12 +443,14 @@ def test_the_ends_of_every_range_are_survived(only_context: moderngl.Context) ->
                 stage.update_params(stage.params.completed({**busy, name: value}))
                 stage.seek(30)
             except DemoscopeError:
+                refused.append(name)
                 continue
             found = stage.geometry()
             for quality in QUALITIES:
                 assert np.isfinite(found[quality]).all(), (name, value, quality)
             check_books(stage, found)
             assert only_context.error == "GL_NO_ERROR", (name, value)
+    assert not refused
 
 
 @pytest.mark.parametrize("values", [{"mass": (1e-3, 1e-3), "drag": (1e3, 1e3), "wind": 50.0, "gusts": 1.0},

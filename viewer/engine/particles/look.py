@@ -50,8 +50,8 @@ class LookParameters(Parameters):
     glow: float = slider(1.0, 0.01, 100.0, "How many times as bright", logarithmic=True, group=LOOK)
     lighting: float = slider(0.0, 0.0, 1.0, "From its own light, 0, to that of the studio with its shadows, 1",
                              group=LOOK)
-    softness: float = slider(0.05, 0.0, 10.0, "Sprites fade over this length towards what is solid, at most over their "
-                             "diameter, and towards the eye", unit="m", group=LOOK, handy=(0.0, 1.0))
+    softness: float = slider(0.05, 0.0, 10.0, "Sprites fade over this length towards what is solid, at most over "
+                             "their diameter, and towards the eye", unit="m", group=LOOK, handy=(0.0, 1.0))
     shadows: bool = toggle(True, "Particles shade the ground and each other", group=LOOK)
     colouring: str = choice("look", COLOURINGS, "What the colour tells", group=TEACHING)
     colouring_scale: float = slider(8.0, 0.001, 1000.0, "Speed at the bright end of the scale", unit="m/s",
