@@ -60,7 +60,7 @@ class ParticleFountain(Scene):
     def __init__(self, gpu: Gpu, params: Params) -> None:
         self.gpu = gpu
         self.params = params
-        self.system = ParticleSystem(gpu, params, trail_bytes(params))
+        self.system = ParticleSystem(gpu, params, trail_bytes(params) + Sprites.bytes_per_particle)
         self.system.holds_still = params.strands
         self.trails = Trails(gpu, self.system, params)
         self.system.companions.append(self.trails)

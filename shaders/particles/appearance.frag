@@ -1,6 +1,7 @@
 #version 330 core
 // What each particle looks like from here, one a pixel: where its sprite stands in the picture and how large it is,
-// its colour, and a key by which to draw the farthest first. Who cannot be seen gets the last key.
+// its colour, and a key by which to draw the farthest first. Who cannot be seen gets the last key; two bits above
+// the key's sixteen tell what is too large for a point, and what fades pixel by pixel.
 #include "generated/look.glsl"
 #include "particles/sprite_kinds.glsl"
 #include "particles/lens.glsl"
@@ -13,6 +14,7 @@ uniform float u_softness;
 uniform float u_opacity;
 uniform vec2 u_spin;            // degrees a second
 uniform float u_largest_point;  // in pixels
+uniform sampler2D u_scene_depth;
 
 layout(location = 0) out vec4 out_place;    // middle in pixels, window depth, half the width in pixels
 layout(location = 1) out vec4 out_tint;     // its light where it is opaque, and its opacity
@@ -111,9 +113,17 @@ Polygon tumbling(Particle one, float scale) {
     return Polygon(pixel_of(one.view), axes, -vec2(right.z, up.z), frame[2]);
 }
 
-uint key_of(float distance_away, bool too_large) {
-    float nearness = 1.0 - log(distance_away / nearest()) / log(farthest() / nearest());
-    return uint(32766.0 * clamp(nearness, 0.0, 1.0)) << 1u | (too_large ? 1u : 0u);
+uint key_of(float away, float radius) {
+    float nearness = 1.0 - log(away / nearest()) / log(farthest() / nearest());
+    uint too_large = 2.0 * radius > u_largest_point ? 0x10000u : 0u, fades = radius >= FADES_AS_ONE ? 0x20000u : 0u;
+    return uint(65534.0 * clamp(nearness, 0.0, 1.0)) | too_large | fades;
+}
+
+// How much is left of a small sprite near to what is solid. Where that is far in front the depth test will tell.
+float before_solid(vec2 middle, float away, float diameter) {
+    ivec2 pixel = ivec2(clamp(middle, vec2(0.0), u_frame.resolution - 1.0));
+    float gap = distance_at(texelFetch(u_scene_depth, pixel, 0).r) - away, reach = min(u_softness, diameter);
+    return gap < -reach ? 1.0 : clamp(gap / max(reach, 1e-6), 0.0, 1.0);
 }
 
 Particle particle_at(ivec2 slot, out float left_to_live) {
@@ -164,11 +174,13 @@ void main() {
                       BILLBOARD == TUMBLES ? tumbling(one, scale) : facing_camera(one, scale);
     float before_eye = away - nearest() - 0.5 * one.diameter;   // what the eye passes through fades away before
     one.opacity *= clamp(before_eye / (u_softness + 0.5 * one.diameter + 1e-6), 0.0, 1.0);
+    if (SOFT && radius < FADES_AS_ONE)
+        one.opacity *= before_solid(polygon.middle, away, one.diameter);
     float reaching;
     out_tint = tint(one.place, polygon.normal, qualities_of(one, slot), one.opacity, reaching);
     out_place = vec4(polygon.middle, depth_at(away), radius);
     out_axes = polygon.axes;
     out_turn = vec4(reaching, random_of(one.identity, 70u), polygon.depths);
     bool drawn = seen && !is_outside(polygon) && out_tint.a > 0.0;
-    out_key = drawn ? key_of(away, 2.0 * radius > u_largest_point) : UNSEEN;
+    out_key = drawn ? key_of(away, radius) : UNSEEN;
 }

@@ -59,7 +59,7 @@ void main() {
     if (HIDES)
         shape *= min(1.0, 1.0 / max(v_tint.a * shape.a, 1e-6));
     float opacity = v_tint.a;
-    if (SOFT)
+    if (FADES)
         opacity *= clamp((distance_at(scene_depth()) - v_soft.x) * v_soft.y, 0.0, 1.0);
     out_color = opacity * vec4(v_tint.rgb * shape.rgb, HIDES ? shape.a : 0.0);
     if (OUTLINED) {

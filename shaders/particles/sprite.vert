@@ -67,9 +67,10 @@ void share_out(float radius) {
 }
 
 void tell_fragments(float depth, float radius) {
-    if (SOFT) {
+    if (FADES) {
         float away = distance_at(depth);
-        v_soft = vec2(away, 1.0 / max(min(u_softness, 2.0 * radius * away / pixels_per_slope()), 1e-6));
+        float reach = max(min(u_softness, 2.0 * radius * away / pixels_per_slope()), 1e-6);
+        v_soft = radius < FADES_AS_ONE ? vec2(-1.0, 1e6) : vec2(away, 1.0 / reach);
     }
     if (SHADED) {
         v_key = mat3(u_frame.view) * u_frame.key_direction;

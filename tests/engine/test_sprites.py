@@ -236,6 +236,21 @@ def test_sprites_fade_towards_what_is_solid(make_stage: MakeStage, billboard: st
         assert (motes.total()[0] > 1.0) == seen
 
 
+@pytest.mark.parametrize("pixels", [0.5, 4.0])
+def test_small_sprites_fade_as_one(make_stage: MakeStage, pixels: float) -> None:
+    """By as much; what is far behind is left to the depth test, pixel by pixel."""
+    motes = Motes(make_stage, softness=0.4, glow=50.0)
+    size = 4.0 * pixels / motes.scale
+    totals = []
+    for before in (2.0, 0.5, 0.25, 0.0, -0.5, -2.0):
+        motes.put(motes.at((80.5, 48.5), 4.0 - before * size), size)
+        vars(motes.stage.scene)["wall"] = None
+        whole = motes.total()[0]
+        vars(motes.stage.scene)["wall"] = 4.0
+        totals.append(motes.total()[0] / whole)
+    assert totals == pytest.approx([1.0, 0.5, 0.25, 0.0, 0.0, 0.0], abs=0.02)
+
+
 def test_nobody_explodes_at_the_eye_or_behind_it(make_stage: MakeStage) -> None:
     """Through the near plane, behind the eye, of any size: numbers stay finite; what surrounds the eye is not seen."""
     motes = Motes(make_stage, softness=0.1, lighting=1.0)

@@ -13,7 +13,8 @@ from scipy import stats
 
 from tests.scenes.particle_stage import QUIET, Numbers, followed, played, set_anew, stage_of_particles
 from viewer.engine.number_fields import Number
-from viewer.engine.particles.system import ParticleParameters, Tally
+from viewer.engine.particles.system import ParticleParameters
+from viewer.engine.particles.tally import Tally
 from viewer.engine.scene import Geometry
 from viewer.engine.stage import Stage
 from viewer.errors import DemoscopeError

@@ -110,9 +110,9 @@ def test_in_a_vacuum_mass_does_not_matter(shared: Stage) -> None:
 @pytest.mark.parametrize("wind", [0.0, 12.0])
 def test_everything_ends_up_at_its_terminal_velocity(shared: Stage, mass: float, drag: float, wind: float) -> None:
     """It falls at m g / c, and goes along with the wind."""
-    _, velocity = one(shared, 600, mass=(mass, mass), drag=(drag, drag), wind=wind, wind_heading=90.0,
-                      speed=(20.0, 20.0))
-    np.testing.assert_allclose(velocity[-1], [0.0, -mass * G / drag, -wind], atol=1e-3)
+    set_anew(shared, {"burst": 1, "mass": (mass, mass), "drag": (drag, drag), "wind": wind, "wind_heading": 90.0,
+                      "speed": (20.0, 20.0)})
+    np.testing.assert_allclose(played(shared, 600)["velocity"][0], [0.0, -mass * G / drag, -wind], atol=1e-3)
 
 
 def test_wind_acts_through_drag_alone(shared: Stage) -> None:
@@ -183,7 +183,7 @@ def test_an_ellipse_keeps_its_energy_and_its_area(shared: Stage) -> None:
     """Kepler's second law, and what measure() says of the energy."""
     options: dict[str, Any] = {"gravity": 0.0, "attractor": "point", "attraction": 20.0, "attractor_core": 0.01,
                                "attractor_y": 2.0, "emitter_tilt": 90.0, "speed": (2.2, 2.2)}
-    place, velocity = one(shared, 900, **options)
+    place, velocity = one(shared, 600, **options)
     away = place - np.array([0.0, 2.0, 0.0])
     swept = np.cross(away, velocity)[:, 2]
     np.testing.assert_allclose(swept, swept[0], rtol=1e-3)
@@ -195,7 +195,7 @@ def test_an_ellipse_keeps_its_energy_and_its_area(shared: Stage) -> None:
 
 def test_a_line_attracts_as_the_inverse_of_the_distance(shared: Stage) -> None:
     """Any circle around it has the same speed, and nothing pulls along it."""
-    place, velocity = one(shared, 600, gravity=0.0, attractor="line", attraction=9.0, attractor_core=0.01,
+    place, velocity = one(shared, 300, gravity=0.0, attractor="line", attraction=9.0, attractor_core=0.01,
                           attractor_x=0.0, attractor_z=-2.0, emitter_tilt=90.0, speed=(3.0, 3.0))
     away = place - np.array([0.0, 0.0, -2.0])
     np.testing.assert_allclose(np.hypot(away[:, 0], away[:, 2]), 2.0, rtol=2e-3)
@@ -236,20 +236,22 @@ def apexes(height: Numbers, velocity: Numbers, gravity: float = G) -> list[float
 @pytest.mark.parametrize("restitution", [0.5, 0.6, 0.7, 0.8, 0.9, 0.95])
 def test_apexes_fall_by_the_square_of_the_restitution(shared: Stage, restitution: float) -> None:
     """Five bounces, within 1 %."""
-    place, velocity = one(shared, 700, ground=True, restitution=restitution, friction=0.0, emitter_height=2.0)
+    place, velocity = one(shared, 400, ground=True, restitution=restitution, friction=0.0, emitter_height=2.0)
     heights = apexes(place[:, 1], velocity[:, 1])[:5]
     np.testing.assert_allclose(heights, 2.0 * restitution**(2 * np.arange(1, 6)), rtol=0.01)
 
 
 @pytest.mark.parametrize("restitution", [0.5, 0.8])
-@pytest.mark.parametrize("offset", np.linspace(0.0, 0.163, 8))
-def test_apexes_wherever_in_the_step_the_impact_falls(shared: Stage, restitution: float, offset: float) -> None:
-    place, velocity = one(shared, 260, ground=True, ground_height=-1.0, restitution=restitution, friction=0.0,
-                          emitter_height=0.5 + offset)
-    heights = apexes(place[:, 1] + 1.0, velocity[:, 1])[:5]
-    expected = (1.5 + offset) * restitution**(2 * np.arange(1, 1 + len(heights)))
-    assert len(heights) >= 3
-    np.testing.assert_allclose(heights, expected, rtol=0.01)
+def test_apexes_wherever_in_the_step_the_impact_falls(shared: Stage, restitution: float) -> None:
+    """Dropped from many heights at once."""
+    track = motion(shared, 260, ground=True, ground_height=-1.0, restitution=restitution, friction=0.0,
+                   emitter="box", emit_from="volume", emitter_thickness=0.1, emitter_height=0.5, burst=40)
+    height, velocity = track["position"][..., 1] + 1.0, track["velocity"][..., 1]
+    for one_height, one_velocity in zip(height.T, velocity.T, strict=True):
+        heights = apexes(one_height, one_velocity)[:5]
+        assert len(heights) >= 3
+        np.testing.assert_allclose(heights, one_height[0] * restitution**(2 * np.arange(1, 1 + len(heights))),
+                                   rtol=0.01)
 
 
 @pytest.mark.parametrize("restitution", [0.5, 0.7, 0.9])
@@ -269,7 +271,7 @@ def test_bounces_on_a_slope(shared: Stage, restitution: float) -> None:
 
 @pytest.mark.parametrize("restitution", [0.5, 0.7, 0.9])
 def test_bounces_on_the_pole_of_a_sphere(shared: Stage, restitution: float) -> None:
-    place, velocity = one(shared, 400, obstacle="sphere", obstacle_size=0.8, obstacle_y=0.0, emitter_height=2.8,
+    place, velocity = one(shared, 340, obstacle="sphere", obstacle_size=0.8, obstacle_y=0.0, emitter_height=2.8,
                           restitution=restitution, friction=0.0)
     heights = apexes(place[:, 1] - 0.8, velocity[:, 1])[:5]
     np.testing.assert_allclose(heights, 2.0 * restitution**(2 * np.arange(1, 6)), rtol=0.01)
@@ -277,9 +279,9 @@ def test_bounces_on_the_pole_of_a_sphere(shared: Stage, restitution: float) -> N
 
 
 def test_with_full_restitution_it_comes_back_for_ever(shared: Stage) -> None:
-    place, velocity = one(shared, 1800, ground=True, restitution=1.0, friction=0.0, emitter_height=1.0)
+    place, velocity = one(shared, 900, ground=True, restitution=1.0, friction=0.0, emitter_height=1.0)
     heights = apexes(place[:, 1], velocity[:, 1])
-    assert len(heights) >= 30
+    assert len(heights) >= 15
     assert max(heights) < 1.0 + 1e-4
     assert heights[-1] > 0.97
 
@@ -344,12 +346,12 @@ def test_friction_stops_what_slides_on_level_ground(shared: Stage) -> None:
 
 def test_all_come_to_rest(shared: Stage) -> None:
     """On level ground with loss and friction, without trembling, and none sinks in."""
-    track = motion(shared, 60, 540, ground=True, restitution=0.5, friction=0.3, emitter_height=1.0, speed=(1.0, 4.0),
+    track = motion(shared, 30, 500, ground=True, restitution=0.5, friction=0.3, emitter_height=1.0, speed=(1.0, 4.0),
                    spread=60.0)
     assert np.abs(track["velocity"]).max() < 1e-3
     assert track["position"][..., 1].min() >= 0.0 and track["position"][..., 1].max() < 1e-3
     collisions = shared.measure()["collisions"]
-    assert played(shared, 660) and shared.measure()["collisions"] == collisions     # lying is no striking
+    assert played(shared, 600) and shared.measure()["collisions"] == collisions     # lying is no striking
 
 
 @pytest.mark.parametrize("surface", [{"ground": True, "ground_tilt": 20.0}, {"obstacle": "sphere", "obstacle_y": 0.0},
@@ -424,7 +426,7 @@ OBSTACLES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("restitution", [0.0, 0.8])
 @pytest.mark.parametrize("name", OBSTACLES)
 def test_nobody_is_inside_what_is_solid(shared: Stage, name: str, restitution: float) -> None:
     """At no frame, on a slope that leans against the obstacle, with others arriving all the time."""
@@ -436,7 +438,7 @@ def test_nobody_is_inside_what_is_solid(shared: Stage, name: str, restitution: f
         "emitter": "sphere", "emitter_size": 0.3, "emitter_height": 1.0 if inside else 3.0, "emit_from": "volume"}
     set_anew(shared, {**values, **emitter, "burst": 500, "rate": 600.0, "speed": (0.0, 12.0), "spread": 180.0,
                       "lifetime": (1.5, 3.0)})
-    for frame in (*range(0, 60), *range(60, 160, 7)):
+    for frame in (*range(0, 40), *range(40, 120, 7)):
         found = played(shared, frame)
         assert np.isfinite(found["position"]).all() and np.isfinite(found["velocity"]).all()
         distance = outside(found["position"], values)
@@ -481,6 +483,16 @@ def test_nothing_leaps_from_one_side_of_a_tube_to_the_other(shared: Stage) -> No
     np.testing.assert_allclose(found["position"], np.tile([0.3, 0.0, 0.0], (300, 1)), atol=2e-3)
 
 
+def test_who_is_on_the_way_tunnels_no_more_when_others_get_slow(shared: Stage) -> None:
+    """What is in flight keeps its speed when the parameter falls, and is watched as closely as before."""
+    ball = {"obstacle": "sphere", "obstacle_size": 0.5, "obstacle_x": 19.0, "obstacle_y": 0.0, "collision": "stick"}
+    set_anew(shared, {**ball, "burst": 300, "gravity": 0.0, "speed": (100.0, 200.0), "emitter_tilt": 90.0})
+    shared.seek(3)
+    shared.set(speed=(1.0, 1.0))
+    found = played(shared, 30)["position"]
+    np.testing.assert_allclose(found, np.tile([18.5, 0.0, 0.0], (300, 1)), atol=2e-3)
+
+
 @pytest.mark.parametrize("turbulence", [0.0, 5.0])
 def test_an_obstacle_that_is_put_where_particles_are_pushes_them_out(shared: Stage, turbulence: float) -> None:
     set_anew(shared, {"burst": 2000, "emitter": "sphere", "emitter_size": 1.0, "emitter_height": 1.0,
@@ -504,7 +516,7 @@ def test_energy_never_grows(shared: Stage, name: str, restitution: float) -> Non
     emitter = {"emitter": "torus", "emitter_size": 1.0, "emitter_thickness": 0.1, "emitter_height": 1.0} \
         if name == "tube" else {"emitter": "sphere", "emitter_size": 0.3,
                                 "emitter_height": 1.0 if "hollow" in values else 3.0}
-    track = motion(shared, 240, **values, **emitter, emit_from="volume", speed=(0.0, 5.0), spread=180.0, burst=300)
+    track = motion(shared, 90, **values, **emitter, emit_from="volume", speed=(0.0, 5.0), spread=180.0, burst=300)
     joules = energy(track, G)
     scale = np.abs(joules).max()
     assert (np.diff(joules, axis=0).max() < 1e-4 * scale)
@@ -519,7 +531,7 @@ def test_a_box_of_bouncing_balls_keeps_its_energy(shared: Stage) -> None:
                       "obstacle_y": 1.0, "emitter": "sphere", "emitter_size": 0.3, "emitter_height": 1.0,
                       "restitution": 1.0, "friction": 0.0, "speed": (1.0, 5.0), "spread": 180.0, "burst": 400})
     total = []
-    for frame in range(0, 1801, 60):
+    for frame in range(0, 901, 60):
         shared.seek(frame)
         measured = shared.measure()
         total.append(float(measured["kinetic_energy"]) + float(measured["potential_energy"]))  # type: ignore[arg-type]

@@ -24,6 +24,7 @@ class Motion:
     def __init__(self, gpu: Gpu, forces: Forces, colliders: Colliders, step_seconds: float) -> None:
         self.gpu, self.forces, self.colliders, self.step_seconds = gpu, forces, colliders, step_seconds
         self.params = forces.params
+        self.fastest = self.greatest_speed()    # that anyone may have who now lives
         self.collider_constants: Mapping[str, Callable[[], str]] = {"generated/collider.glsl": colliders.constants}
         self._all = self._program(newborn=False)
         self._newborn = self._program(newborn=True)
@@ -53,7 +54,16 @@ class Motion:
         with drawing_into(self.gpu, target, size):
             array.render(vertices=3)
 
+    def greatest_speed(self) -> float:
+        """Nobody who is born with the present parameters is ever faster, in m/s."""
+        p: Any = self.params
+        born = ["", *(f"{family}_" for family, when in zip(FAMILIES, moments(p), strict=True) if when != "never")]
+        launch = sum(p.get(f"{family}speed")[1] for family in born)
+        life = sum(p.get(f"{family}lifetime")[1] for family in born)
+        return float(launch + life * self.forces.greatest_acceleration())
+
     def _set(self, program: Program) -> None:
+        self.fastest = max(self.fastest, self.greatest_speed())
         self.forces.apply(program, self.seconds - 0.5 * self.step_seconds)
         program["u_step"] = self.step_seconds
         program["u_thinnest"] = self.colliders.thinnest
@@ -75,9 +85,4 @@ class Motion:
 
     def _may_pass_through(self) -> bool:
         """Whether something could be so fast as to jump over the thinnest collider within a step."""
-        p: Any = self.params
-        born = ["", *(f"{family}_" for family, when in zip(FAMILIES, moments(p), strict=True) if when != "never")]
-        launch = sum(p.get(f"{family}speed")[1] for family in born)
-        life = sum(p.get(f"{family}lifetime")[1] for family in born)
-        fastest = launch + life * self.forces.greatest_acceleration()
-        return bool(fastest * self.step_seconds > self.colliders.thinnest)
+        return max(self.fastest, self.greatest_speed()) * self.step_seconds > self.colliders.thinnest

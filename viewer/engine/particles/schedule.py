@@ -14,7 +14,7 @@ ScheduleState: TypeAlias = tuple[float, float, int, float, float]
 
 @dataclass(frozen=True)
 class Births:
-    """``number`` births in a row. As the step ends the first has lived ``lived`` seconds, each next ``between`` less."""
+    """``number`` births in a row: at its end the first has lived ``lived`` seconds, each next ``between`` less."""
 
     number: int
     lived: float

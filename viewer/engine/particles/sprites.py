@@ -40,7 +40,7 @@ class Sprites:
         self.shadow = SpriteShadow(gpu, system.pool, self.table, params)
         self.prepare()
         self._order = gpu.buffer(reserve=4 * system.pool.capacity, label="sprites' order")
-        self._arrays: dict[str, VertexArray] = {}
+        self._arrays: dict[tuple[str, bool], VertexArray] = {}
         self._overdraw: Overdraw | None = None
 
     def prepare(self) -> None:
@@ -50,7 +50,7 @@ class Sprites:
 
     def draw(self, scene_depth: moderngl.Texture) -> None:
         """Draw all particles into the layer of sprites; ``scene_depth`` is that of what is solid."""
-        self.appearance.compute()
+        self.appearance.compute(scene_depth)
         slots = self.appearance.slots
         if len(slots):
             self._order.orphan()
@@ -87,7 +87,7 @@ class Sprites:
     def _draw_sprites(self, scene_depth: moderngl.Texture, number: int) -> None:
         if not number:
             return
-        array = self._array(self.shape)
+        array = self._array(self.shape, self.appearance.needs_depth)
         self.appearance.bind(array.program)
         scene_depth.use(SCENE_DEPTH_UNIT)
         array.program["u_scene_depth"] = SCENE_DEPTH_UNIT
@@ -112,22 +112,23 @@ class Sprites:
         fills_square = params.outlines or params.overdraw or params.sprite == "texture"
         return "square" if fills_square or params.billboard == "camera" else "triangle"
 
-    def _array(self, shape: str) -> VertexArray:
+    def _array(self, shape: str, fades: bool) -> VertexArray:
         """The vertex array for a shape, linked when first wanted."""
-        if shape not in self._arrays:
+        if (shape, fades) not in self._arrays:
             program = self.gpu.program("particles/sprite.vert", "particles/sprite.frag", generated={
                 "generated/look.glsl": lambda: look.look_constants(self.params),
-                "generated/sprite.glsl": lambda: self._constants(shape)})
+                "generated/sprite.glsl": lambda: self._constants(shape, fades)})
             mode, corners = SHAPES[shape]
             content = [(self._order, "1u/i" if corners else "1u", "in_slot")]
-            self._arrays[shape] = self.gpu.vertex_array(program, content, mode=mode)
-        return self._arrays[shape]
+            self._arrays[shape, fades] = self.gpu.vertex_array(program, content, mode=mode)
+        return self._arrays[shape, fades]
 
-    def _constants(self, shape: str) -> str:
+    def _constants(self, shape: str, fades: bool) -> str:
         """The include ``generated/sprite.glsl``."""
         params = self.params
         lit = params.lighting > 0.0 and params.colouring == "look"
         shaded = (params.sprite == "ball" or (params.sprite == "puff" and lit)) and not params.overdraw
         turned = params.sprite in OF_EACH_ITS_OWN or params.billboard == "tumble" or look.turns(params)
         return slot_constants(self.system.pool) + look.constants(
-            {"SHAPE": list(SHAPES).index(shape), "SHADED": shaded, "USES_TURN": shaded or turned})
+            {"SHAPE": list(SHAPES).index(shape), "SHADED": shaded, "USES_TURN": shaded or turned,
+             "FADES": fades and params.softness > 0.0})

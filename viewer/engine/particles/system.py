@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Hashable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,6 +21,7 @@ from viewer.engine.particles.motion import Motion
 from viewer.engine.particles.pool import CHILDREN_SHIFT, DIED, LASTING, LIVES, MOVING, STRUCK, Pool, PoolSnapshot
 from viewer.engine.particles.qualities import EmissionParameters, QualityParameters
 from viewer.engine.particles.schedule import Births, Schedule, ScheduleState
+from viewer.engine.particles.tally import Tally
 from viewer.engine.rewind import Snapshot
 from viewer.engine.scene import Geometry
 
@@ -53,22 +54,6 @@ class Companion(Protocol):
         """Remember again what was remembered then."""
 
 
-@dataclass
-class Tally:
-    """What has happened since the start. ``live`` holds the number of the living, frame by frame."""
-
-    emitted: int = 0
-    died: int = 0
-    collisions: int = 0
-    children: int = 0
-    refused: int = 0
-    live: list[int] = field(default_factory=lambda: [0])
-
-    def copy(self) -> Tally:
-        """The same numbers, apart."""
-        return Tally(self.emitted, self.died, self.collisions, self.children, self.refused, list(self.live))
-
-
 @dataclass(frozen=True)
 class SystemSnapshot:
     """All that the future of a system follows from."""
@@ -78,6 +63,7 @@ class SystemSnapshot:
     tally: Tally
     born: int
     steps: int
+    fastest: float
     companions: tuple[Snapshot, ...]
 
     @property
@@ -139,6 +125,7 @@ class ParticleSystem:
         self.pool.clear()
         self.schedule, self.tally, self.steps, self.nursery.born = Schedule(self.params), Tally(), 0, 0
         self.motion.seconds = self.seconds
+        self._reckon_with(self.motion.greatest_speed())
         for companion in self.companions:
             companion.begin()
         for some in self._bear(np.empty(0, np.uint32), self.schedule.first()):
@@ -174,12 +161,14 @@ class ParticleSystem:
 
     def snapshot(self) -> SystemSnapshot:
         """All that the future follows from, to be put back by ``restore``."""
+        companions = tuple(companion.snapshot() for companion in self.companions)
         return SystemSnapshot(self.pool.snapshot(), self.schedule.state(), self.tally.copy(), self.nursery.born,
-                              self.steps, tuple(companion.snapshot() for companion in self.companions))
+                              self.steps, self.motion.fastest, companions)
 
     def restore(self, snapshot: SystemSnapshot) -> None:
         """Go back to a moment."""
         self.pool.restore(snapshot.pool)
+        self._reckon_with(snapshot.fastest)
         self.schedule.restore(snapshot.schedule)
         self.tally, self.nursery.born, self.steps = snapshot.tally.copy(), snapshot.born, snapshot.steps
         for companion, kept in zip(self.companions, snapshot.companions, strict=True):
@@ -205,6 +194,12 @@ class ParticleSystem:
         squared = (velocity**2).sum(axis=1)
         potential = self.forces.potential_energy(arrays["position"].astype(np.float64), mass)
         return float(0.5 * mass @ squared), float(potential.sum()), float(np.sqrt(squared.max(initial=0.0)))
+
+    def _reckon_with(self, fastest: float) -> None:
+        """Nobody who now lives is faster: what may pass through a collider in a step is looked at more closely."""
+        if fastest != self.motion.fastest:
+            self.motion.fastest = fastest
+            self.gpu.refresh()
 
     def _stepped(self) -> NDArray[np.uint16]:
         """The status of each slot after everyone has moved on."""
