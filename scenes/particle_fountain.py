@@ -53,7 +53,7 @@ class ParticleFountain(Scene):
         set_radius: float = slider(2.6, 0.2, 60.0, "How large the set is that light and shadow reach", unit="m",
                                    logarithmic=True, group="Look")
 
-    camera = Orbit(yaw=24, pitch=9, distance=8.2, target=(0.0, 1.25, 0.0))
+    camera = Orbit(yaw=24, pitch=7, distance=6.9, target=(0.0, 1.25, 0.0))
     studio = Studio(center=(0.0, 1.2, 0.0), radius=2.6, ground=0.0, backdrop=BACKDROPS["dusk"])
     poster = 240
 

@@ -217,7 +217,11 @@ class Stage:
 
     def refresh_shaders(self) -> ShaderError | None:
         """Take over edited shader files; returns the error that stands, if any."""
-        return self.scene.gpu.refresh() or self.painter.refresh()
+        generation = self.scene.gpu.generation
+        error = self.scene.gpu.refresh() or self.painter.refresh()
+        if self.scene.gpu.generation != generation:
+            self._rewind.forget()       # what an edited shader would have done is not what was kept
+        return error
 
     def release(self) -> None:
         """Free everything on the GPU; nothing can be drawn after that."""

@@ -62,7 +62,7 @@ class ColliderParameters(Parameters):
                                    when="obstacle=mesh|formula")
     obstacle_color: tuple[float, float, float] = color("#6f8796", "Colour of the obstacle", group=GROUP, when=ANY)
     collision: str = choice("bounce", COLLISIONS, "What happens to a particle that runs into something", group=GROUP)
-    restitution: float = slider(0.5, 0.0, 1.0, "Speed after a bounce, as a part of that before", group=GROUP,
+    restitution: float = slider(0.3, 0.0, 1.0, "Speed after a bounce, as a part of that before", group=GROUP,
                                 when="collision=bounce")
     friction: float = slider(0.2, 0.0, 2.0, "Coulomb's coefficient of friction", group=GROUP, when="collision=bounce")
 

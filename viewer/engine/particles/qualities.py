@@ -18,7 +18,7 @@ class EmissionParameters(EmitterParameters):
 
     count: int = integer(100_000, 1, MOST_PARTICLES, "Room for so many particles at a time", logarithmic=True,
                          rebuild=True, group="Emission")
-    rate: float = slider(6000.0, 0.0, 5e6, "Particles born each second", unit="/s", group="Emission",
+    rate: float = slider(7000.0, 0.0, 5e6, "Particles born each second", unit="/s", group="Emission",
                          handy=(0.0, 50_000.0))
     burst: int = integer(0, 0, MOST_PARTICLES, "Particles born all at once, at the start", group="Emission")
     burst_every: float = slider(0.0, 0.0, 60.0, "Seconds from one burst to the next; 0: there is only one", unit="s",
@@ -43,11 +43,11 @@ class QualityParameters(Parameters):
 
     lifetime: tuple[float, float] = interval((2.4, 3.2), 0.02, 600.0, "How long a particle lives", unit="s",
                                              group="Particles", handy=(0.02, 10.0))
-    speed: tuple[float, float] = interval((6.6, 7.6), 0.0, 200.0, "How fast it is emitted", unit="m/s",
+    speed: tuple[float, float] = interval((5.8, 7.6), 0.0, 200.0, "How fast it is emitted", unit="m/s",
                                           group="Particles", handy=(0.0, 20.0))
-    spread: float = slider(9.0, 0.0, 180.0, "Largest angle between the normal and the way it goes", unit="degrees",
+    spread: float = slider(11.0, 0.0, 180.0, "Largest angle between the normal and the way it goes", unit="degrees",
                            group="Particles")
-    size: tuple[float, float] = interval((0.012, 0.03), 1e-4, 20.0, "Its diameter", unit="m", logarithmic=True,
+    size: tuple[float, float] = interval((0.01, 0.028), 1e-4, 20.0, "Its diameter", unit="m", logarithmic=True,
                                          group="Particles")
     mass: tuple[float, float] = interval((1.0, 1.0), 1e-3, 1e3, "Its mass: the heavier, the less air moves it",
                                          unit="kg", logarithmic=True, group="Particles", handy=(0.01, 10.0))
