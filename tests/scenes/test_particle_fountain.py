@@ -52,9 +52,9 @@ def test_there_is_a_preset_for_each_thing_that_particles_make(name: str) -> None
 def test_a_preset_moves_and_has_room(context: moderngl.Context, name: str) -> None:
     """Every preset fits into its count, shows something, and goes on showing something else."""
     with viewer.headless("particle_fountain", size=(128, 72), samples=0, preset=name) as stage:
-        stage.seek(20)
+        stage.seek(45)
         first = stage.pixels()
-        stage.seek(40)
+        stage.seek(60)
         assert stage.measure()["alive"] > 0
         assert np.abs(stage.pixels().astype(int) - first).max() > 8
         assert not [remark for remark in stage.remarks() if "No room" in remark]
