@@ -148,8 +148,9 @@ Particle particle_at(ivec2 slot, out float left_to_live) {
 
 Qualities qualities_of(Particle one, ivec2 slot) {
     vec4 nature = texelFetch(u_nature, slot, 0);
-    int generation = int(texelFetch(u_launch, slot, 0).w);
-    return Qualities(one.identity, generation, one.over, length(one.velocity), nature.z, nature.y, one.diameter);
+    float family = texelFetch(u_launch, slot, 0).w;
+    return Qualities(one.identity, int(family), fract(family), one.over, length(one.velocity), nature.z, nature.y,
+                     one.diameter);
 }
 
 bool is_outside(Polygon polygon) {

@@ -25,6 +25,9 @@ uniform vec2 u_mass, u_drag;
 uniform float u_wave_width;
 uniform float u_wave_reach;                         // how far the wave has come, in metres; negative for no wave
 
+const int MOST_PUSHES = 8;
+const float FAMILIES = 0.99;        // what is beside the generation tells a family, and never makes another one
+
 layout(location = 0) out vec4 out_motion;
 layout(location = 1) out vec4 out_velocity;
 layout(location = 2) out vec4 out_nature;
@@ -75,6 +78,7 @@ void main() {
 
     vec3 place, normal, carried = vec3(0.0);
     int generation = 0;
+    float kin = random_of(identity, 61u);
     emission_place(random_state, place, normal);
     if (u_wave_reach >= 0.0)
         ride_wave(place, normal);
@@ -84,6 +88,7 @@ void main() {
         vec4 launch = texelFetch(u_launch, slot, 0);
         vec3 velocity = texelFetch(u_velocity, slot, 0).xyz;
         generation = int(launch.w) + 1;
+        kin = fract(launch.w) / FAMILIES;
         lived = u_step * next_random(random_state);
         place = texelFetch(u_motion, slot, 0).xyz;
         bool alight = HAS_COLLIDER && collider_distance(place) < 0.02;
@@ -99,8 +104,8 @@ void main() {
     float lifetime = drawn(plan.lifetime, random_state);
     float size = drawn(plan.size, random_state), mass = drawn(u_mass, random_state), drag = drawn(u_drag, random_state);
     if (HAS_COLLIDER) {                         // whoever is born inside something is pushed out of it, or not born
-        place += max(0.0, -collider_distance(place)) * collider_normal(place);
-        place += max(0.0, collider_clearance(place) - collider_distance(place)) * collider_normal(place);
+        for (int push = 0; push < MOST_PUSHES; ++push)      // sampled distances are smaller than true ones
+            place += max(0.0, collider_clearance(place) - collider_distance(place)) * collider_normal(place);
         if (collider_distance(place) < 0.0)
             lifetime = 0.0;
     }
@@ -108,5 +113,5 @@ void main() {
     out_velocity = vec4(velocity, float((identity >> 8u) | 1u));
     out_nature = vec4(lifetime, size, mass, drag);
     out_origin = vec4(place, lived);
-    out_launch = vec4(velocity, float(generation));
+    out_launch = vec4(velocity, float(generation) + FAMILIES * kin);
 }

@@ -23,8 +23,10 @@ int brood(int generation, uint identity, float left_before, float left_after, bo
     int moment = brood_moment(generation);
     vec2 range = brood_range(generation);
     float number = mix(range.x, range.y, random_of(identity, 40u));
-    if (moment == DURING_LIFE)          // as many as whole multiples of 1/number have gone by
-        return clamp(int(floor(number * left_before) - floor(number * left_after)), 0, MOST_CHILDREN);
+    if (moment == DURING_LIFE) {        // one each time that 1/number has gone by, since a moment of its own
+        float since = random_of(identity, 43u);
+        return clamp(int(floor(number * left_before + since) - floor(number * left_after + since)), 0, MOST_CHILDREN);
+    }
     if ((moment == ON_IMPACT && struck) || (moment == AT_DEATH && died)) {
         uint event = identity ^ floatBitsToUint(left_before);
         number = mix(range.x, range.y, random_of(event, 41u));

@@ -1,9 +1,9 @@
 #version 330 core
 // Where each strand ends: at the end of the particle's life, or where it is long enough.
 #include "particles/paths.glsl"
-#include "particles/trail_colors.glsl"
+#include "particles/life_color.glsl"
 
-uniform sampler2D u_motion, u_velocity, u_nature;   // see step.frag
+uniform sampler2D u_motion, u_velocity, u_nature, u_launch;     // see step.frag
 uniform float u_trail_length, u_trail_width, u_tint_variation;
 
 layout(location = 0) out vec4 out_end;      // where, and how many points it has before
@@ -32,5 +32,5 @@ void main() {
     vec3 tint = exp2(u_tint_variation * (0.9 * shade + 0.35 * warmth * vec3(1.0, 0.1, -1.0)));
     out_end = vec4(mix(here.xyz, next.xyz, part), float(last));
     out_reach = vec4(extent, lives * 0.5 * u_trail_width * nature.y, random_of(identity, 65u), 0.0);
-    out_light = vec4(own_shade(tint, identity), 1.0);
+    out_light = vec4(own_shade(tint, identity, fract(texelFetch(u_launch, slot, 0).w)), 1.0);
 }

@@ -3,7 +3,7 @@
 #include "generated/strand.glsl"
 #include "particles/paths.glsl"
 #include "particles/ribbon.glsl"
-#include "particles/trail_colors.glsl"
+#include "particles/life_color.glsl"
 #include "particles/fibre.glsl"
 
 uniform sampler2D u_launch;
@@ -38,7 +38,7 @@ void main() {
         vec3 along = way / max(length(way), 1e-9);
         vec4 launch = texelFetch(u_launch, slot, 0);
         vec3 out_of = launch.xyz / max(length(launch.xyz), 1e-9);
-        vec3 albedo = min(life_color(up, int(launch.w)).rgb * texelFetch(u_tint, slot, 0).rgb, 1.0);
+        vec3 albedo = min(life_color(up, int(launch.w)) * texelFetch(u_tint, slot, 0).rgb, 1.0);
         float open = mix(1.0 - u_root_shade, 1.0, smoothstep(0.0, 0.8, up));
         out_light = vec4(hair_light(here.xyz, along, out_of, albedo, u_shine, u_shine_sharpness, open), 1.0);
     }

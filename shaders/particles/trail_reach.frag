@@ -2,7 +2,10 @@
 // How far back each particle's trail reaches: as long as its length allows, as far as memory goes, and not beyond
 // the place where it was born. Notes lie behind the particle at known ages, so that no life is mistaken for another.
 #include "particles/paths.glsl"
-#include "particles/trail_colors.glsl"
+#include "generated/look.glsl"
+#include "particles/life_color.glsl"
+#include "particles/sprite_kinds.glsl"
+#include "particles/telling_color.glsl"
 
 uniform sampler2D u_motion, u_velocity, u_nature, u_origin, u_launch;   // see step.frag
 uniform int u_notes;                // that have been taken, at most one for each block
@@ -59,11 +62,18 @@ void main() {
     float part = has_next || meets_birth ? clamp(min(by_length, by_time), 0.0, 1.0) : 0.0;
 
     float over = age / max(nature.x, 1e-9), extent = gone + part * stretch;
-    float width = motion.w > 0.0 ? u_trail_width * nature.y * life_size(over) : 0.0;
+    vec2 size_and_opacity = over_life(over, 0).xy;
+    float width = motion.w > 0.0 ? u_trail_width * nature.y * size_and_opacity.x : 0.0;
     width *= smoothstep(0.0, 2.0 * width + 1e-9, extent);       // what rests shrinks to nothing
-    vec4 color = life_color(over, int(texelFetch(u_launch, slot, 0).w));
-    uint identity = uint(abs(texelFetch(u_velocity, slot, 0).w));
+    vec4 velocity = texelFetch(u_velocity, slot, 0);
+    float family = texelFetch(u_launch, slot, 0).w;
+    Qualities of = Qualities(uint(abs(velocity.w)), int(family), fract(family), over, length(velocity.xyz), nature.z,
+                             nature.y, width);
+    vec4 light = vec4(u_glow * own_shade(life_color(over, of.generation), of.identity, of.kin),
+                      size_and_opacity.y * u_opacity);
+    if (COLOURING != BY_LOOK)
+        light = vec4(telling_color(of), 1.0);
     out_end = vec4(mix(here.xyz, next, part), float(last));
     out_reach = vec4(way, extent, 0.5 * width, 0.0);
-    out_light = vec4(u_glow * own_shade(color.rgb, identity), color.a * u_opacity * u_trail_opacity);
+    out_light = vec4(light.rgb, light.a * u_trail_opacity);
 }

@@ -50,7 +50,8 @@ class Strands:
             return
         forces, system = self.system.forces, self.system
         system.motion.seconds = system.seconds
-        moved = bool(self.params.turbulence > 0.0 or (forces.has_drag and self.params.wind and self.params.gusts))
+        swirls = self.params.turbulence > 0.0 and self.params.turbulence_pace > 0.0
+        moved = bool(swirls or (forces.has_drag and self.params.wind and self.params.gusts))
         key = (system.steered_by(), system.nursery.born, system.pool.alive_count, self.gpu.generation,
                system.seconds if moved else None)
         if key != self._grown:

@@ -15,6 +15,7 @@ from viewer.engine.declarations import integer, slider, toggle
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
 from viewer.engine.particles.life_table import LifeTable
+from viewer.engine.particles.look import colouring_range, constants, is_sorted, look_constants
 from viewer.engine.particles.paths import Paths, drawing_at
 from viewer.engine.particles.ribbons import Ribbons
 from viewer.engine.particles.system import ParticleSystem
@@ -161,8 +162,7 @@ class TrailDrawing:
         self.reach.bind(program, REACH_UNIT)
 
     def _constants(self) -> str:
-        hides = self.trails.params.get("blending") != "additive"
-        return f"const bool HIDES = {str(hides).lower()};\n"
+        return constants({"HIDES": is_sorted(self.trails.params)})
 
 
 class Reach:
@@ -177,7 +177,9 @@ class Reach:
         self.target = gpu.framebuffer(list(self._textures.values()), label="ribbons' reach")
         self.target.clear()
         self.table = LifeTable(gpu, params)
-        self.program = gpu.program("studio/screen.vert", finding, generated={"generated/paths.glsl": paths.constants})
+        self.program = gpu.program("studio/screen.vert", finding, generated={
+            "generated/paths.glsl": paths.constants, "generated/look.glsl": lambda: look_constants(params)})
+        self.params = params
         self._found = gpu.vertex_array(self.program)
 
     def find(self) -> None:
@@ -186,6 +188,7 @@ class Reach:
         self.paths.bind(self.program, PATHS_UNIT)
         self.table.prepare()
         self.bind_table(self.program)
+        self.program["u_colouring_range"] = colouring_range(self.params)
         with drawing_at(self.gpu, self.target, (0, 0), (self.pool.width, self.pool.rows)):
             self._found.render(vertices=3)
 
@@ -196,7 +199,7 @@ class Reach:
             program[f"u_{name}"] = unit
 
     def bind_table(self, program: Program) -> None:
-        """Let ``program`` read ``particles/trail_colors.glsl``'s table of what changes over a life."""
+        """Let ``program`` read ``particles/life_color.glsl``'s table of what changes over a life."""
         self.table.texture.use(TABLE_UNIT)
         program["u_table"] = TABLE_UNIT
 
