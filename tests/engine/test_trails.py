@@ -16,14 +16,13 @@ from viewer.engine.particles.trails import Trails, trail_bytes
 from viewer.engine.stage import Stage
 
 SCENE = '''
-from viewer import Parameters, Scene, choice, curve, gradient, slider
+from viewer import LookParameters, Scene, curve, gradient, slider
 from viewer.engine.particles.strands import Strands
 from viewer.engine.particles.system import ParticleParameters, ParticleSystem
 from viewer.engine.particles.trails import TrailParameters, Trails, trail_bytes
 
 
-class Look(Parameters):
-    blending = choice("additive", ["additive", "alpha"], "How they come together")
+class Look(LookParameters):
     color = gradient("#ffffff", "Colour")
     size_over_life = curve("1", 0.0, 4.0, "Size")
     opacity_over_life = curve("1", 0.0, 1.0, "Opacity")
