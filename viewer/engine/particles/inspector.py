@@ -82,7 +82,7 @@ class ParticleInspector:
         place, life = self._place(self._texels), self._lifeline(self._texels)
         behind = life.ages <= self._age(self._texels) + 1e-4
         now = place[None].astype(np.float32)
-        strokes = [path(np.concatenate([now, life.places[~behind]]), _paint(FUTURE, 0.55), 1.5),
+        strokes = [path(np.concatenate([now, life.places[~behind]]), _paint(FUTURE, 0.8), 1.5),
                    path(np.concatenate([life.places[behind], now]), _paint(PAST, 0.9), 2.0),
                    path(_circle(place, eye), _paint(MARK, 1.0), 2.0)]
         for name, way in self._arrows(self._texels, eye).items():
