@@ -116,12 +116,15 @@ class ParticleFountain(Scene):
         self.inspector.draw(self.view)
 
     def labels(self) -> Sequence[Label]:
-        return self.inspector.labels(self.view)
+        return [*self.sprites.labels(), *self.inspector.labels(self.view)]
 
     def remarks(self) -> Sequence[str]:
-        refused = self.system.tally.refused
-        full = [f"No room for {refused} births so far: count is {self.params.count}"] if refused else []
-        return [*full, *self.inspector.remarks()]
+        tally, found = self.system.tally, []
+        if tally.refused:
+            found.append(f"No room for {tally.refused} births so far: count is {self.params.count}")
+        if tally.stillborn and not self.system.pool.alive_count:
+            found.append("All are born inside the obstacle or the ground, where there is no room for them")
+        return [*found, *self.inspector.remarks()]
 
     def click(self, click: Click) -> Mapping[str, object]:
         return self.inspector.click(click)

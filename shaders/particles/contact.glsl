@@ -13,29 +13,35 @@ uniform float u_friction;
 uniform float u_step;                   // a whole step, in seconds
 uniform float u_thinnest;               // how thin the thinnest collider is, in metres
 
-const int MOST_PROBES = 48;
-
 struct Impact {
     bool struck;                        // it hit something, and not as what lies on it does
     bool touched;                       // it hit or lies on something
     float moment;                       // when, in seconds since the start
 };
 
-// Where along the path p + t (v + t b) a thing that is too thin to be sure to hold the end may have been entered:
-// times outside and inside. Safe strides as in sphere tracing (Hart 1996), but never shorter than half its thickness.
+// Where along the path p + t (v + t b) the obstacle may have been entered, too thin to be sure to hold the end: a time
+// outside and one inside, or where it was not, 0 and how far the path was followed. Safe strides as in sphere tracing
+// (Hart 1996), but never shorter than half its thickness. (The ground has no far side: there the end tells.)
 vec2 entered(vec3 p, vec3 v, vec3 b, float duration) {
     float speed = length(v) + 2.0 * duration * length(b) + 1e-9;
-    float outside = 0.0, clear = collider_distance(p);
+    float outside = 0.0, clear = obstacle_distance(p);
     for (int probe = 0; probe < MOST_PROBES; ++probe) {
         float next = min(outside + max(clear, 0.5 * u_thinnest) / speed, duration);
-        clear = collider_distance(p + next * (v + next * b));
+        clear = obstacle_distance(p + next * (v + next * b));
         if (clear < 0.0)
             return vec2(outside, next);
         outside = next;
         if (outside >= duration)
             break;
     }
-    return vec2(outside, outside);      // still short of the end: what was not looked at is not entered
+    return vec2(0.0, outside);
+}
+
+// How much of the duration passes before the obstacle is entered, if it is.
+float followed(vec3 p, vec3 v, vec3 b, float duration) {
+    vec2 span = entered(p, v, b, duration);
+    bool inside = obstacle_distance(p + span.y * (v + span.y * b)) < 0.0;
+    return inside ? span.x : span.y;
 }
 
 // Coulomb's law for the velocity along the surface: friction takes away at most what there is.
@@ -83,6 +89,9 @@ Impact met(inout vec3 place, inout vec3 velocity, vec3 acceleration, float rate,
     vec2 span = vec2(0.0, duration);
     if (MAY_PASS_THROUGH) {
         span = entered(p, v, b, duration);
+        vec3 before = p + span.x * (v + span.x * b);
+        if (HAS_GROUND && ground_distance(before) < 0.0)        // the ground came first
+            span = vec2(0.0, span.x);
         end = p + span.y * (v + span.y * b);
         place = end;
         velocity = v + span.y * gain;
@@ -112,6 +121,8 @@ Impact met(inout vec3 place, inout vec3 velocity, vec3 acceleration, float rate,
     }
 
     vec3 along = arriving - dot(arriving, n) * n;
+    if (MAY_PASS_THROUGH && !stays)     // nor through anything on the way off
+        left = followed(hit + collider_clearance(hit) * n, u, 0.5 * a, left);
     place = hit + left * (stays ? 0.5 * (along + u) : u + 0.5 * left * a);
     place += max(0.0, collider_clearance(place) - collider_distance(place)) * collider_normal(place);
     bool lies = stays && dot(u, u) == 0.0 && span.x == 0.0 && distance_out < 2.0 * collider_clearance(p);

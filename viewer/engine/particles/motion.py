@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,10 +13,11 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.particles.cascade import FAMILIES, cascade_constants, has_children, moments
 from viewer.engine.particles.colliders import Colliders
 from viewer.engine.particles.forces import Forces
-from viewer.engine.particles.pool import Pool
+from viewer.engine.particles.pool import MOVING, Pool
 from viewer.engine.program import Program, VertexArray
 
 COLLIDER_UNIT = 5
+MOST_PROBES = 1024
 
 
 class Motion:
@@ -30,6 +32,7 @@ class Motion:
         self._newborn = self._program(newborn=True)
         self._step_all: VertexArray = gpu.vertex_array(self._all)
         self._step_newborn: VertexArray = gpu.vertex_array(self._newborn)
+        self._freeing: VertexArray | None = None
         self.seconds = 0.0      # scene time at the end of the step
 
     def step(self, pool: Pool) -> None:
@@ -49,6 +52,14 @@ class Motion:
             self._newborn[f"u_{name}"] = unit
         self._render(self._step_newborn, target, size)
 
+    def free(self, pool: Pool) -> None:
+        """Push everyone out of colliders that have moved, into the next state; then ``pool`` has to ``turn``."""
+        if self._freeing is None:
+            program = self.gpu.program("studio/screen.vert", "particles/free.frag", generated=self.collider_constants)
+            self._freeing = self.gpu.vertex_array(program)
+        pool.bind(self._freeing.program, MOVING)
+        self._render(self._freeing, pool.stepping, (pool.width, pool.rows))
+
     def _render(self, array: VertexArray, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
         self.colliders.bind(array.program, COLLIDER_UNIT)
         with drawing_into(self.gpu, target, size):
@@ -60,7 +71,9 @@ class Motion:
         born = ["", *(f"{family}_" for family, when in zip(FAMILIES, moments(p), strict=True) if when != "never")]
         launch = sum(p.get(f"{family}speed")[1] for family in born)
         life = sum(p.get(f"{family}lifetime")[1] for family in born)
-        return float(launch + life * self.forces.greatest_acceleration())
+        acceleration = self.forces.greatest_acceleration()
+        slowest = p.drag[0] / p.mass[1]     # how fast, at least, the air takes speed away
+        return float(launch + acceleration * (min(life, 1.0 / slowest) if slowest else life))
 
     def _set(self, program: Program) -> None:
         self.fastest = max(self.fastest, self.greatest_speed())
@@ -80,9 +93,16 @@ class Motion:
         """The include ``generated/step.glsl``."""
         varied = any(low != high for low, high in (self.params.get("mass"), self.params.get("drag")))
         flags = {"NEWBORN": newborn, "VARIED": varied, "CASCADES": has_children(self.params),  # type: ignore[arg-type]
-                 "MAY_PASS_THROUGH": self._may_pass_through()}
-        return "\n".join(f"const bool {name} = {str(value).lower()};" for name, value in flags.items()) + "\n"
+                 "MAY_PASS_THROUGH": self.probes > 0}
+        lines = [f"const bool {name} = {str(value).lower()};" for name, value in flags.items()]
+        return "\n".join([*lines, f"const int MOST_PROBES = {self.probes};", ""])
 
-    def _may_pass_through(self) -> bool:
-        """Whether something could be so fast as to jump over the thinnest collider within a step."""
-        return max(self.fastest, self.greatest_speed()) * self.step_seconds > self.colliders.thinnest
+    @property
+    def probes(self) -> int:
+        """How often a path has to be looked at, lest one who is so fast jumps over the thinnest collider in a step.
+
+        A power of 2, lest shaders are made anew all the time; 0 where nobody is so fast.
+        """
+        way = max(self.fastest, self.greatest_speed()) * self.step_seconds
+        thinnest = self.colliders.thinnest
+        return 0 if way <= thinnest else min(MOST_PROBES, 2 ** math.ceil(math.log2(2.0 * way / thinnest + 2.0)))

@@ -83,10 +83,11 @@ class ParticleSystem:
         self.pool = Pool(gpu, params.count, bytes_beside)
         self.emitter = Emitter(gpu, params)
         self.colliders = Colliders(gpu, params)
+        self.emitter.prepare()
+        self.colliders.prepare()        # how thin they are decides how the step shader looks at them
         self.forces = Forces(params)
         self.motion = Motion(gpu, self.forces, self.colliders, FRAME_SECONDS)
         self.schedule, self.tally, self.steps = Schedule(params), Tally(), 0
-        self.prepare()
         self.nursery = Nursery(gpu, self.pool, self.motion, self.emitter, params.seed)
         self.companions: list[Companion] = []
         self.holds_still = False
@@ -94,6 +95,7 @@ class ParticleSystem:
         self._key: tuple[int, tuple[object, ...]] = -1, ()
         self._warm_steps: int = round(params.warm_up / FRAME_SECONDS)
         self._begun_with: Hashable = None
+        self._standing = self._colliders_stand()
 
     @property
     def seconds(self) -> float:
@@ -103,7 +105,10 @@ class ParticleSystem:
     def prepare(self) -> None:
         """Follow the parameters; raises a DemoscopeError where a file or a formula is at fault."""
         self.emitter.prepare()
+        probes = self.motion.probes
         self.colliders.prepare()
+        if self.motion.probes != probes:
+            self.gpu.refresh()
 
     def steered_by(self) -> Hashable:
         """The values of all parameters that decide how particles move."""
@@ -128,8 +133,7 @@ class ParticleSystem:
         self._reckon_with(self.motion.greatest_speed())
         for companion in self.companions:
             companion.begin()
-        for some in self._bear(np.empty(0, np.uint32), self.schedule.first()):
-            self.pool.alive[some.slots] = some.alive
+        self._enter(self._emitted(self.schedule.first()))
         for _ in range(self._warm_steps):
             self.update()
         self.tally.live = [self.pool.alive_count]
@@ -150,10 +154,10 @@ class ParticleSystem:
         before, lives = len(status), (status & LIVES).astype(bool)
         self.tally.died += int(np.count_nonzero(status & DIED))
         self.tally.collisions += int(np.count_nonzero(status & STRUCK))
-        newborn = self._bear(self._broods(None, status), self._due())
-        self.pool.alive[:before] = lives        # only now are the slots of the dead free
-        for some in newborn:
-            self.pool.alive[some.slots] = some.alive
+        children = list(self._children(self._broods(None, status)))
+        self.pool.alive[:before] = lives        # only now are the slots of the dead free, whose children are born
+        self._enter(children)
+        self._enter(self._emitted(self._due()))
         self.tally.live.append(self.pool.alive_count)
         for companion in self.companions:
             companion.follow()
@@ -205,16 +209,25 @@ class ParticleSystem:
         """The status of each slot after everyone has moved on."""
         if self.holds_still:
             return self.pool.alive[:self.pool.used].astype(np.uint16) * LIVES
+        if self._standing != self._colliders_stand() and self.pool.used:
+            self.motion.free(self.pool)
+            self.pool.turn()
+        self._standing = self._colliders_stand()
         self.motion.step(self.pool)
         return self.pool.turn() if self.pool.used else np.empty(0, np.uint16)
+
+    def _colliders_stand(self) -> Hashable:
+        """Everything about where there are colliders."""
+        p = self.params
+        return self.colliders.generation, p.ground, p.ground_height, p.ground_tilt, p.hollow
 
     def _due(self) -> list[Births]:
         births = self.schedule.due(FRAME_SECONDS)
         return [Births(due.number, 0.0) for due in births] if self.holds_still else births
 
-    def _bear(self, parents: NDArray[np.uint32], births: list[Births]) -> list[Newborn]:
-        """Everyone who is born in a step: children and theirs, then those from the emitter and theirs."""
-        newborn = list(self._children(parents))
+    def _emitted(self, births: list[Births]) -> list[Newborn]:
+        """Those from the emitter, and their children."""
+        newborn: list[Newborn] = []
         for due in births:
             emitted = 0
             for some in self.nursery.from_emitter(due, self._wave_reach()):
@@ -223,11 +236,16 @@ class ParticleSystem:
                 newborn.extend(self._children(self._broods(some.slots, some.status)))
             self.tally.emitted += emitted
             self.tally.refused += due.number - emitted
+        return newborn
+
+    def _enter(self, newborn: list[Newborn]) -> None:
+        """Write down who was born in a step, and whether they live still."""
         for some in newborn:
+            self.pool.alive[some.slots] = some.alive
             self.pool.begun[some.slots] = self.steps
             self.tally.died += len(some.slots) - int(np.count_nonzero(some.alive))
+            self.tally.stillborn += len(some.slots) - int(np.count_nonzero(some.status))
             self.tally.collisions += int(np.count_nonzero(some.status & STRUCK))
-        return newborn
 
     def _children(self, parents: NDArray[np.uint32]) -> Iterator[Newborn]:
         """A child for each slot in ``parents``, and what comes from those before the step is over."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 
 @dataclass
@@ -14,8 +14,9 @@ class Tally:
     collisions: int = 0
     children: int = 0
     refused: int = 0
+    stillborn: int = 0
     live: list[int] = field(default_factory=lambda: [0])
 
     def copy(self) -> Tally:
         """The same numbers, apart."""
-        return Tally(self.emitted, self.died, self.collisions, self.children, self.refused, list(self.live))
+        return replace(self, live=list(self.live))
