@@ -328,6 +328,8 @@ def test_remarks_are_notes_beside_the_result(tmp_path: Path, monkeypatch: pytest
     (["capture", *SPHERE, "--camera", "1,95,2"], "camera pitch = 95.0 is not a number from -89 to 89"),
     (["capture", *SPHERE, "--camera", "nan,0,2"], "camera yaw = nan is not a number"),
     (["capture", *SPHERE, "--seed", "-1"], "-1 is not a whole number from 0 up"),
+    (["capture", *SPHERE, "--seed", "9" * 20], f"{'9' * 20} is more than {'9' * 18}, the largest number allowed"),
+    (["capture", *SPHERE, "--seed", "9" * 9999], f"{'9' * 40} is more than {'9' * 18}, the largest number allowed"),
     (["capture", *SPHERE, "--pack", "/nowhere"], "pack /nowhere has no folder scenes"),
     (["capture", *SPHERE, "--siez", "4x4"], "unrecognized arguments: --siez 4x4"),
     (["measure", *SPHERE, "--frame", "1.5"], "1.5 is not a whole number from 0 up"),

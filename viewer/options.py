@@ -13,6 +13,7 @@ from viewer.engine.fields import nearest
 from viewer.engine.stage import DEFAULT_SIZE
 
 MISTAKE = 2
+LARGEST = 10**18 - 1     # of whole numbers; GL and NumPy take no more than 64 bits
 WINDOW_SIZE = (1280, 800)
 NAMES = ("run", "list", "capture", "export", "measure", "doctor")
 
@@ -97,9 +98,12 @@ class Assignment(argparse.Action):
 
 
 def _whole_number(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or len(text) > 18:
+    if not text.isascii() or not text.isdigit():
         raise argparse.ArgumentTypeError(f"{text[:40]} is not a whole number from 0 up")
-    return int(text)
+    digits = text.lstrip("0")[:len(str(LARGEST)) + 1]       # Python refuses to read thousands of them
+    if int(digits or "0") > LARGEST:
+        raise argparse.ArgumentTypeError(f"{text[:40]} is more than {LARGEST}, the largest number allowed")
+    return int(digits or "0")
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -109,7 +109,8 @@ def drawing(rounds: int) -> Section:
 def cloud(count: int) -> dict[str, object]:
     """The parameters of a ball of particles that grows without anything in its way."""
     return {**CALM, "count": count, "burst": count, "rate": 0.0, "lifetime": (60.0, 60.0), "speed": (0.0, 2.0),
-            "spread": 180.0, "emitter": "point", "emitter_height": 1.0, "gravity": 0.0, "ground": False}
+            "spread": 180.0, "emitter": "point", "emitter_height": 1.0, "gravity": 0.0, "ground": False,
+            "billboard": "camera"}
 
 
 def world_width(stage: Stage, pixels: float) -> float:

@@ -213,7 +213,7 @@ def test_what_cannot_be_an_obstacle_is_refused_and_the_former_one_stays(gpu: Gpu
     for change, words in (({"obstacle_formula": "x*x + 1"}, "nowhere below 0"),
                           ({"obstacle_formula": "sqrt(-1-x*x)"}, "no value"),
                           ({"obstacle": "mesh"}, "needs a mesh"),
-                          ({"obstacle_file": broken}, "obstacle_file = broken.obj")):
+                          ({"obstacle_file": broken}, "obstacle_file = broken.obj: has no area")):
         params.update(change)
         with pytest.raises(ParameterError, match=words):
             colliders.prepare()

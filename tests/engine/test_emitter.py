@@ -379,6 +379,24 @@ def test_nothing_is_made_anew_without_need(bench: Callable[..., Bench]) -> None:
     assert fish.emitter._textures != textures and fish.program.generation == generation + 1
 
 
+def test_an_edited_mesh_is_read_again(bench: Callable[..., Bench], tmp_path: Path) -> None:
+    """Its points, and the surface to draw."""
+    trimesh.creation.icosphere(1).export(tmp_path / "mesh.ply")
+    made = bench(emitter="mesh", emitter_file=tmp_path / "mesh.ply")
+    made.draw()
+    textures, stamp = list(made.emitter._textures), made.emitter.stamp
+    trimesh.creation.box((4.0, 4.0, 4.0)).export(tmp_path / "mesh.ply")
+    made.draw()
+    assert made.emitter._textures != textures and made.emitter.stamp != stamp
+    surface = made.emitter.surface()
+    assert surface is not None and np.abs(surface[0]).max() == pytest.approx(2.0)
+    (tmp_path / "mesh.ply").unlink()
+    textures = list(made.emitter._textures)
+    with pytest.raises(MeshFileError, match=r"mesh\.ply does not exist"):
+        made.draw()
+    assert made.emitter._textures == textures
+
+
 def test_bad_meshes_are_refused_and_the_last_good_one_stays(bench: Callable[..., Bench], tmp_path: Path) -> None:
     """No file, an open mesh asked for its volume, one without area."""
     made = bench(emitter="mesh")

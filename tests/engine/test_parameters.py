@@ -145,6 +145,7 @@ def test_values_and_texts_are_taken(name: str, value: object, expected: object) 
     ("model", __file__, "does not end in .glb, .gltf"),
     ("lifetime", "3..2", "lifetime = 3..2 has its ends swapped: the smaller comes first"),
     ("lifetime", "1..2..3", "lifetime = 1..2..3 is not a range such as 0..10"),
+    ("lifetime", "2...3", "lifetime = 2...3 is not a range such as 0..10"),
     ("lifetime", (1, 11), "lifetime = (1, 11) is outside 0 to 10"),
     ("amplitud", 0.1, "unknown parameter amplitud; did you mean amplitude?"),
     ("zzzzzz", 0.1, "unknown parameter zzzzzz"),

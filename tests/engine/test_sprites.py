@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +15,9 @@ from PIL import Image
 from tests.conftest import MakeStage
 from viewer.engine.camera import Orbit
 from viewer.engine.fields import ParameterError
-from viewer.engine.particles.look import SPRITES
-from viewer.engine.particles.sprite_image import puff_noise
+from viewer.engine.particles.cascade import CascadeParameters
+from viewer.engine.particles.look import SPRITES, LookParameters, generation_key
+from viewer.engine.particles.sprite_image import image_texels, puff_noise
 from viewer.engine.particles.sprites import Sprites
 from viewer.engine.stage import Stage
 from viewer.kit.gradient import Gradient
@@ -382,6 +385,41 @@ def test_colours_tell_of_qualities(make_stage: MakeStage) -> None:
     assert motes.stage.color_scale() is None
 
 
+@pytest.mark.parametrize("colouring", ["mass", "size"])
+def test_one_value_for_all_has_the_middle_of_the_scale(make_stage: MakeStage, colouring: str) -> None:
+    motes = Motes(make_stage, mass=(2.0, 2.0), size=(2.0, 2.0), colouring=colouring, children_when="never")
+    scale = motes.stage.color_scale()
+    assert scale is not None and (scale.low, scale.high) == (0.0, 4.0)
+
+
+def test_the_key_of_generations_names_those_that_there_are() -> None:
+    """In the colours of the picture, and only where these tell generations."""
+    class Both(CascadeParameters, LookParameters):
+        pass
+
+    params = Both({"colouring": "generation", "children_when": "life", "grandchildren_when": "death",
+                   "great_grandchildren_when": "never"})
+    words, *squares = generation_key(params)
+    assert words.text.split() == ["from", "the", "emitter", "child", "grandchild"]
+    assert [square.color for square in squares] == ["#e69f00", "#56b4e9", "#009e73"]
+    assert [square.text.split("\n").index("■") for square in squares] == [0, 1, 2]
+    params.update({"great_grandchildren_when": "death"})
+    assert "great-grandchild" in generation_key(params)[0].text
+    params.update({"children_when": "never"})
+    assert generation_key(params)[0].text.strip() == "from the emitter"
+    for change in ({"overdraw": True}, {"overdraw": False, "colouring": "age"}):
+        params.update(change)
+        assert generation_key(params) == ()
+
+
+def test_a_picture_can_be_named_before_it_is_chosen(make_stage: MakeStage, tmp_path: Path) -> None:
+    """A window greys what has no effect; a picture needs its file before it can have one."""
+    motes = Motes(make_stage)
+    assert motes.stage.params.is_active("texture")
+    motes.stage.set(texture=picture(tmp_path))
+    motes.stage.set(sprite="texture")
+
+
 def test_outlines_show_the_polygons(make_stage: MakeStage) -> None:
     """A frame one pixel wide around a square, whose corners the spot leaves dark."""
     motes = Motes(make_stage)
@@ -489,3 +527,27 @@ def test_nothing_is_made_for_each_frame(make_stage: MakeStage) -> None:
         now = len(motes.stage.scene.gpu._owned), len(motes.stage.scene.gpu.programs)
         assert owned in (None, now)
         owned = now
+
+
+@pytest.mark.parametrize(("size", "why"), [((10000, 10000), "is 10000 x 10000 pixels, which is more than 4096 along"),
+                                           ((20000, 10000), "has more than 4096 pixels along a side")])
+def test_a_picture_of_very_many_pixels_is_refused_without_reading_them(
+        tmp_path: Path, size: tuple[int, int], why: str, recwarn: pytest.WarningsRecorder) -> None:
+    """Its header says enough; Pillow's own warning would be a second line."""
+    def chunk(kind: bytes, body: bytes) -> bytes:
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0)
+    body = chunk(b"IHDR", header) + chunk(b"IDAT", b"")
+    (tmp_path / "vast.png").write_bytes(b"\x89PNG\r\n\x1a\n" + body + chunk(b"IEND", b""))
+    with pytest.raises(ParameterError, match=rf"^texture = .*vast\.png {why}[^\n]*$"):
+        image_texels(tmp_path / "vast.png")
+    assert not recwarn.list
+
+
+def test_an_edited_picture_is_read_again(make_stage: MakeStage, tmp_path: Path) -> None:
+    motes = Motes(make_stage, sprite="texture", texture=picture(tmp_path), blending="alpha")
+    motes.put(motes.at((80.0, 48.0), 4.0), 4.0 * 40.0 / motes.scale)
+    assert motes.light()[58, 80, 0] == pytest.approx(1.0, abs=0.01)
+    Image.new("RGB", (9, 9), (0, 0, 255)).save(tmp_path / "picture.png")
+    assert motes.light()[58, 80] == pytest.approx([0.0, 0.0, 1.0, 0.0], abs=0.01)

@@ -63,9 +63,8 @@ def test_sphere_and_torus_are_met_closely() -> None:
     check(torus, torus_distance(sample_places(torus), 1.0, 0.3))
 
 
-@pytest.mark.parametrize("half_extents", [(1.0, 0.5, 0.7), (1.0, 0.013, 0.8), (0.02, 0.03, 1.0)])
-def test_box_is_exact_near_its_surface_and_has_the_right_signs_however_thin(
-        half_extents: tuple[float, float, float]) -> None:
+@pytest.mark.parametrize("half_extents", [(1.0, 0.5, 0.7), (1.0, 0.06, 0.8), (0.07, 0.08, 1.0)])
+def test_box_is_exact_near_its_surface_and_has_the_right_signs(half_extents: tuple[float, float, float]) -> None:
     field = mesh_distance_field(*shapes.box(half_extents), samples=40)
     check(field, box_distance(sample_places(field), half_extents), near=1e-4)
 
@@ -78,10 +77,53 @@ def test_acute_wedge_has_the_right_signs(degrees: float) -> None:
     sides = [p[..., 0] * lower[1] - p[..., 1] * lower[0], p[..., 1] * upper[0] - p[..., 0] * upper[1],
              p[..., 0] - lower[0], np.abs(p[..., 2]) - 0.5]
     outermost = np.max(sides, axis=0)
-    telling = np.abs(outermost) > 1e-6
-    assert ((field.values < 0.0) == (outermost < 0.0))[telling].all()
-    inside = outermost < 0.0
+    assert (field.values[outermost < -1e-6] < 0.0).all()
+    thin_up_to = 1.5 / np.radians(degrees) + 1.0 if degrees < 45.0 else -np.inf        # there it has a shell
+    away = p[..., 0] > thin_up_to * field.cell
+    assert (field.values[(outermost > 1e-6) & away] > 0.0).all()
+    inside = (outermost < 0.0) & away
     np.testing.assert_allclose(field.values[inside], outermost[inside], atol=0.45 * field.cell)
+
+
+def turned(places: Points) -> Points:
+    """By some angle about some axis."""
+    turn, lean = np.radians(31.0), np.radians(17.0)
+    about_y = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
+    about_z = np.array([[np.cos(lean), -np.sin(lean), 0], [np.sin(lean), np.cos(lean), 0], [0, 0, 1]])
+    return np.asarray(places @ (about_y @ about_z).T)
+
+
+@pytest.mark.parametrize("half_thickness", [1e-4, 0.025, 0.075])
+@pytest.mark.parametrize("leaning", [False, True])
+def test_box_thinner_than_a_cell_is_solid_everywhere_in_its_middle(half_thickness: float, leaning: bool) -> None:
+    vertices, triangles = shapes.box((3.0, half_thickness, 3.0))
+    field = mesh_distance_field(turned(vertices) if leaning else vertices, triangles)
+    middle = np.random.default_rng(2).uniform(-2.9, 2.9, (20_000, 3)) * [1.0, 0.0, 1.0]
+    above = middle + np.array([0.0, half_thickness + 1.1 * field.cell, 0.0])
+    assert field.at(turned(middle) if leaning else middle).max() < -0.1 * field.cell
+    assert field.at(turned(above) if leaning else above).min() > 0.2 * field.cell
+
+
+def test_torus_thinner_than_a_cell_is_solid_all_around() -> None:
+    field = mesh_distance_field(*shapes.torus(1.0, 0.012, 192, 16))
+    turn = np.linspace(0.0, 2.0 * np.pi, 5000)
+    assert field.at(np.stack([np.cos(turn), 0.0 * turn, np.sin(turn)], axis=1)).max() < -0.1 * field.cell
+
+
+def test_wedge_is_solid_up_to_its_edge() -> None:
+    (vertices, triangles), lower, _ = wedge(5.0)
+    field = mesh_distance_field(vertices, triangles)
+    along = np.linspace(0.0, 0.99 * lower[0], 500)
+    assert field.at(np.stack([along, 0.0 * along, 0.1 + 0.0 * along], axis=1)).max() < -0.1 * field.cell
+
+
+def test_stepping_by_the_distance_never_goes_through_a_thin_box() -> None:
+    field = mesh_distance_field(*shapes.box((1.0, 0.004, 1.0)), samples=32)
+    generator = np.random.default_rng(5)
+    start = field.origin + generator.uniform(-0.2, 1.2, (100_000, 3)) * field.extent
+    end = start + 10.0 ** generator.uniform(-2.0, 0.5, (len(start), 1)) * field.cell * generator.normal(size=(1, 3))
+    change = np.abs(field.at(start) - field.at(end))
+    assert (change <= np.linalg.norm(start - end, axis=1) * (1.0 + 1e-3) + 1e-6).all()
 
 
 def test_turning_a_closed_mesh_inside_out_changes_nothing() -> None:
@@ -137,6 +179,29 @@ def test_formula_is_met_closely_and_has_its_own_sign() -> None:
     assert turned.at(np.zeros((1, 3)))[0] > 0.5
     assert turned.at(np.full((1, 3), 0.9))[0] < 0.0
     assert turned.at(np.full((1, 3), 1.2))[0] > 0.1
+
+
+@pytest.mark.parametrize("samples", [16, 64])
+@pytest.mark.parametrize(("text", "reach"), [
+    ("length(x, y, z) - 0.5", 1.0), ("length(x, y, z) - 0.5 - 0.1*sin(8*x)*sin(8*y)*sin(8*z)", 1.0),
+    ("x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8", 3.0), ("max(abs(x), abs(y), abs(z)) - 0.6", 1.0),
+])
+def test_nowhere_inside_a_formula_is_the_distance_above_0(text: str, reach: float, samples: int) -> None:
+    function = FieldFunction(parse(text))
+    field, vertices, triangles = formula_distance_field(function, reach, samples)
+    generator = np.random.default_rng(1)
+    chosen = vertices[triangles[generator.integers(0, len(triangles), 200_000)]]
+    near = np.einsum("ij,ijk->ik", generator.dirichlet((1.0, 1.0, 1.0), len(chosen)), chosen)
+    spread = field.cell * generator.choice([0.01, 0.1, 0.5], (len(near), 1))
+    places = near + spread * generator.normal(size=near.shape)
+    values, slopes = function.at(places.astype(np.float32)), np.zeros(len(places))
+    for axis in np.eye(3):
+        ahead, behind = (function.at((places + step * axis).astype(np.float32)) for step in (1e-3, -1e-3))
+        slopes += np.square((ahead - behind) / 2e-3)
+    depth = -values / np.sqrt(slopes)
+    distance = field.at(places)
+    assert depth[(distance >= 0.0) & (slopes > 0.0)].max() < 1.5e-4
+    assert np.abs(distance + depth)[np.abs(depth) < 0.05 * field.cell].mean() < 0.25 * field.cell
 
 
 def test_formula_without_values_beside_its_solid_is_closed_there() -> None:

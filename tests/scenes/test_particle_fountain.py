@@ -145,7 +145,9 @@ def test_forces_on_the_inspected_particle_add_up_to_its_acceleration(stage: Stag
     seed = int(before["seed"][5])
     stage.set(inspect=str(seed))
     stage.pixels()
-    rows = dict(stage.measure()["inspected"].rows)
+    told = stage.measure()["inspected"]
+    rows = dict(told.rows)
+    assert told.columns == ("quantity", "value")
     force = sum(np.array([float(part) for part in str(value).split(",")])
                 for name, value in rows.items() if str(name).endswith("(N)"))
     stage.seek(31)

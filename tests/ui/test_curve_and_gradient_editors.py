@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 from imgui_bundle import imgui
 
+from viewer.engine.life_fields import LifeCurveField
 from viewer.engine.presets import load_preset, save_preset
 from viewer.kit.gradient import Gradient
 from viewer.kit.life_curve import MOST_POINTS, LifeCurve
 from viewer.ui import curve_editor, gradient_editor
+from viewer.ui.curve_axis import fitted_top
 from viewer.ui.widgets import explain
 
 if TYPE_CHECKING:
@@ -39,6 +41,22 @@ class Ember(Scene):
     def draw(self):
         pass
 '''
+CINDER = '''
+from viewer import Parameters, Scene, Studio, curve, interval
+
+class Cinder(Scene):
+    """Something that turns."""
+
+    class Params(Parameters):
+        girth = curve("0:0.8, 0.5:1, 1:1", 0.0, 4.0, "Its girth")
+        turn = interval((0.0, 90.0), 0.0, 720.0, "How fast it turns", unit="degrees/s")
+        wait = interval((0.0, 1.0), 0.0, 2.0, "How long it waits", unit="s")
+
+    studio = Studio(ground=None)
+
+    def draw(self):
+        pass
+'''
 START = "0:0, 0.25:1, 1:0"
 PIXEL = 0.025       # of a curve's range, at most: ImGui cuts the mouse to whole pixels
 COLORS = "0:#ffffff, 0.5:#ff8800, 1:#300000"
@@ -55,6 +73,13 @@ def make_ember(make_hand: Callable[..., Hand], pack: Path) -> Callable[..., Hand
 def hand(make_ember: Callable[..., Hand]) -> Hand:
     """That scene in a window of 1024x768."""
     return make_ember()
+
+
+@pytest.fixture
+def cinder(make_hand: Callable[..., Hand], pack: Path) -> Hand:
+    """A scene with a curve that may go much higher than it does, and ranges."""
+    (pack / "scenes" / "cinder.py").write_text(CINDER)
+    return make_hand(scene="cinder")
 
 
 def em(hand: Hand) -> float:
@@ -209,8 +234,62 @@ def test_the_curve_shows(hand: Hand) -> None:
     hand.point((600.0, 300.0))
     pixels = column(0.65)
     blue = pixels[:, 2] - pixels[:, 0]
-    assert abs(int(np.argmax(blue)) / len(blue) - 0.5) < 0.06, "the line runs through the middle"
+    assert abs(int(np.argmax(blue)) / len(blue) - 1 / 3) < 0.06, "the axis ends at 0.75"
     assert blue[int(0.75 * len(blue))] > blue[int(0.25 * len(blue))] + 10, "and the area under it is shaded"
+
+
+@pytest.mark.parametrize(("limits", "points", "top"), [
+    ((0.0, 4.0), "0:0.8, 1:0.9", 1.0), ((0.0, 4.0), "0:1, 1:0", 2.0), ((0.0, 4.0), "0:0", 1.0),
+    ((0.0, 4.0), "0:3.9", 4.0), ((0.0, 1.0), "0:1", 1.0), ((-2.0, 2.0), "0:0.1", 2.0), ((2.0, 10.0), "3", 4.0)])
+def test_the_axis_goes_a_bit_higher_than_the_curve(limits: tuple[float, float], points: str, top: float) -> None:
+    field = LifeCurveField(points, *limits, "A curve")
+    assert fitted_top(field, field.default) == top
+
+
+def test_the_axis_stays_under_the_hand_and_fits_when_it_has_gone(cinder: Hand) -> None:
+    """A point lies under the mouse wherever it is dragged to in the plot, though its curve could do with less."""
+    start, end = on_plot(cinder, 0.5, 1.0, "girth", high=2.0), on_plot(cinder, 0.6, 0.2, "girth", high=2.0)
+    cinder.point(start)
+    cinder.button(True)
+    for place, expected in ((end, 0.2), (start, 1.0), (end, 0.2)):
+        cinder.point(place)
+        cinder.frames(3)
+        assert cinder.value("girth").points[1][1] == pytest.approx(expected, abs=2 * PIXEL)
+    cinder.button(False)
+    cinder.click(end)
+    assert len(cinder.value("girth").points) == 3, "it is still there"
+    cinder.bench.change("girth", {"girth": "0:0.5"})
+    cinder.point((600.0, 300.0))
+    cinder.click(on_plot(cinder, 0.5, 0.9, "girth", high=1.0))
+    assert cinder.value("girth").points[1] == pytest.approx((0.5, 0.9), abs=PIXEL)
+
+
+def test_a_drag_beyond_the_top_stretches_the_axis_up_to_the_limit(cinder: Hand) -> None:
+    start = on_plot(cinder, 0.5, 1.0, "girth", high=2.0)
+    cinder.point(start)
+    cinder.button(True)
+    for height in (3.0, 2.5, 3.0, 9.0, 1.5, 3.0):
+        cinder.point(on_plot(cinder, 0.5, height, "girth", high=2.0))
+        cinder.frames(3)
+        expected = min(height, 4.0)
+        assert cinder.value("girth").points[1][1] == pytest.approx(expected, abs=2 * PIXEL), "it does not run away"
+    cinder.button(False)
+    cinder.point((600.0, 300.0))
+    right_click(cinder, on_plot(cinder, 0.5, 3.0, "girth", high=4.0))
+    assert str(cinder.value("girth")) == "0:0.8, 1:1"
+
+
+def test_a_range_shows_its_unit_only_where_there_is_room(cinder: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+    formats: dict[float, str] = {}
+    original = imgui.drag_float_range2
+
+    def noting(*arguments: Any) -> Any:
+        formats[arguments[5]] = arguments[6]
+        return original(*arguments)
+
+    monkeypatch.setattr(imgui, "drag_float_range2", noting)
+    cinder.frames(2)
+    assert formats == {720.0: "%.4g", 2.0: "%.4g s"}
 
 
 # Gradients

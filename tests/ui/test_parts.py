@@ -11,6 +11,7 @@ import pytest
 from viewer.engine.scene import Curve
 from viewer.engine.stage import Stage
 from viewer.ui import measurer, sparing_question
+from viewer.ui.color_scale import reading
 from viewer.ui.history import History
 from viewer.ui.imgui_session import Surface
 from viewer.ui.layout import View, arrange
@@ -141,3 +142,10 @@ def test_panels_are_built_under_a_hand_and_else_as_often_as_one_can_read() -> No
     assert sum(frames) == pytest.approx(2.0, abs=0.06), "no time is lost between builds"
     resized = Surface(None, (800, 600))
     assert pace.due(1 / 60, resized, touched=False), "another size is built at once"
+
+
+@pytest.mark.parametrize(("number", "unit", "expected"), [
+    (8.0, "m/s", "8 m/s"), (0.0, "kg", "0 kg"), (2.5, "°", "2.5°"), (40.0, "%", "40%"), (3.0, " cells", "3 cells"),
+    (0.25, "", "0.25")])
+def test_a_unit_stands_apart_from_its_number_unless_it_is_a_sign(number: float, unit: str, expected: str) -> None:
+    assert reading(number, unit) == expected

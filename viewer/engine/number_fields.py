@@ -106,7 +106,7 @@ class Interval(Number[tuple[float, float]]):
 
     def parse(self, value: object) -> tuple[float, float]:
         if isinstance(value, str):
-            ends: Sequence[object] = value.split("..")
+            ends: Sequence[object] = value.split("..") if "..." not in value else ()
             ends = list(ends) * 2 if len(ends) == 1 else ends
         elif isinstance(value, (Sequence, np.ndarray)) and np.ndim(value):
             ends = list(value)

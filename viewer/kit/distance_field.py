@@ -16,16 +16,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit.field_function import FieldFunction
+from viewer.kit.formula_fit import covering, gaps
 from viewer.kit.marching import table_surface
-from viewer.kit.mesh_distance import checked_mesh, sampled_distances
+from viewer.kit.mesh_distance import checked_mesh, sampled_distances, thickened
 from viewer.kit.pseudonormal import edge_uses, welded
+from viewer.kit.thin_parts import SHELL
 
 Points = NDArray[np.float64]
 Values = NDArray[np.float32]
 
 FEWEST_SAMPLES = 8
 MARGIN = 2              # cells between a mesh and the grid's border
-SHELL = 0.75            # cells: half the thickness of an open mesh; with half a cell it vanishes between samples
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,7 @@ class FormulaSurface(NamedTuple):
 def mesh_distance_field(vertices: ArrayLike, triangles: ArrayLike, samples: int = 64) -> DistanceField:
     """The distances to a mesh, ``samples`` along its longest side; closed meshes may have their inside out.
 
+    An open mesh becomes a shell, and so does a closed one where it is too thin to be seen between the samples.
     Raises ValueError for a mesh without area and for one with a vertex that is not finite.
     """
     places, faces = checked_mesh(vertices, triangles)
@@ -113,15 +115,18 @@ def mesh_distance_field(vertices: ArrayLike, triangles: ArrayLike, samples: int 
     shape = np.ceil((high - low) / cell - 1e-9).astype(int) + 1 + 2 * MARGIN
     origin = 0.5 * (low + high) - 0.5 * cell * (shape - 1)
     uses = edge_uses(faces, len(places))
-    distance, sides = sampled_distances(places, faces, origin, cell, shape, uses if uses.closed else None)
-    values = distance * sides if uses.closed else distance - SHELL * cell
+    found = sampled_distances(places, faces, origin, cell, shape, uses if uses.closed else None)
+    values = found.distance - SHELL * cell
+    if uses.closed:
+        values = thickened(found.distance * found.side, places, faces, origin, cell)
     return DistanceField(values.astype(np.float32), origin, np.full(3, cell), uses.closed)
 
 
 def formula_distance_field(function: FieldFunction, reach: float, samples: int = 64) -> FormulaSurface:
     """The solid where ``function`` is below 0, cut off where x, y or z is ``reach`` from 0.
 
-    Where the function has no value is outside. Raises ValueError where nothing or everything is inside.
+    The field is below 0 wherever the function is, but for what is too small for the samples; the mesh's triangles
+    are chords. Where the function has no value is outside. Raises ValueError where nothing or everything is inside.
     """
     inner = max(samples, FEWEST_SAMPLES) - 2 * MARGIN
     cell = 2.0 * reach / inner
@@ -137,9 +142,23 @@ def formula_distance_field(function: FieldFunction, reach: float, samples: int =
     origin = np.full(3, (0.5 - MARGIN) * cell - reach)
     vertices = origin + cell * corners
     joined, faces = welded(vertices, triangles)
-    distance, _ = sampled_distances(joined, faces, origin, cell, np.array(closed.shape), None)
-    signed = np.where(closed < 0.0, -distance, distance).astype(np.float32)
-    return FormulaSurface(DistanceField(signed, origin, np.full(3, cell)), vertices, triangles)
+    found = sampled_distances(joined, faces, origin, cell, np.array(closed.shape), None)
+    signed = np.where(closed < 0.0, -found.distance, found.distance)
+    signed += _missed(function, found.nearest, found.distance, reach, cell)
+    field = DistanceField(signed.astype(np.float32), origin, np.full(3, cell))
+    return FormulaSurface(covering(field, function, reach), vertices, triangles)
+
+
+def _missed(function: FieldFunction, nearest: Points, distance: Points, reach: float, cell: float) -> Points:
+    """How far the mesh's places ``nearest`` (n, 3) to the samples are from the true surface, towards the outside.
+
+    Nothing for samples further away than a few cells, nor where the solid is cut off.
+    """
+    share = np.clip(3.0 - distance / cell, 0.0, 1.0)
+    telling = (share.ravel() > 0.0) & (np.abs(nearest).max(axis=1) < reach - 0.6 * cell)
+    missed = np.zeros(len(nearest))
+    missed[telling] = gaps(function, nearest[telling], cell)
+    return np.asarray(share * missed.reshape(distance.shape))
 
 
 def _closed_off(values: Values) -> Values:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from viewer.kit.nearest_triangle import Nearest, NearestTriangle
 from viewer.kit.pseudonormal import EdgeUses, feature_normals, welded
+from viewer.kit.thin_parts import thin_parts
 
 Points = NDArray[np.float64]
 
@@ -14,6 +17,15 @@ BAND = 1.7              # cells: samples nearer than this to a piece of the surf
 APART = 0.6             # cells: no surface runs between neighbours both further from it than this
 PIECE = 1.2             # cells: how finely triangles are cut to find the nearest
 TOLERANCE = 0.1         # cells: of pieces smaller than this the nearest few will do
+
+
+class Sampled(NamedTuple):
+    """Of each sample of a grid the ``distance`` and the ``side``, 1 or -1, both (nx, ny, nz), and the nearest place
+    on the surface, ``nearest`` (n, 3)."""
+
+    distance: Points
+    side: Points
+    nearest: Points
 
 
 def checked_mesh(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Points, NDArray[np.int64]]:
@@ -35,21 +47,41 @@ def checked_mesh(vertices: ArrayLike, triangles: ArrayLike) -> tuple[Points, NDA
 
 
 def sampled_distances(places: Points, faces: NDArray[np.int64], origin: Points, cell: float, shape: NDArray[np.intp],
-                      uses: EdgeUses | None) -> tuple[Points, Points]:
-    """The distance of each sample (nx, ny, nz), and with ``uses`` of a closed mesh's edges its side, 1 or -1."""
-    axes = [first + cell * np.arange(count) for first, count in zip(origin, shape, strict=True)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+                      uses: EdgeUses | None) -> Sampled:
+    """The distance of each sample, and with ``uses`` of a closed mesh's edges its side."""
+    points = _lattice(origin, cell, shape)
     solid = _with_area(places, faces)
     look = NearestTriangle(places[faces[solid]], PIECE * cell, TOLERANCE * cell)
     near = _near(look.middles, origin, cell, shape)
     found = _everywhere(look, points, near, BAND * cell)
     distance = found.distance.reshape(shape)
     if uses is None:
-        return distance, np.ones(shape)
+        return Sampled(distance, np.ones(shape), found.place)
     normals = feature_normals(places, faces, uses, solid[found.triangle], found.feature)
     outward = np.einsum("ij,ij->i", points - found.place, normals) >= 0.0
     sides = np.where(outward != _is_inside_out(places, faces), 1.0, -1.0).reshape(shape)
-    return distance, _agreed(sides, distance / cell, near)
+    return Sampled(distance, _agreed(sides, distance / cell, near), found.place)
+
+
+def thickened(values: Points, places: Points, faces: NDArray[np.int64], origin: Points, cell: float) -> Points:
+    """Signed distances to a closed mesh, less where it is too thin for the samples: there it gets a shell.
+
+    What is solid is then the mesh and all that is near its thin parts, so that elsewhere nothing changes.
+    """
+    corners = places[faces[_with_area(places, faces)]]
+    parts = thin_parts(corners[:, ::-1] if _is_inside_out(places, faces) else corners, values, origin, cell)
+    if not len(parts.shells):
+        return values
+    look = NearestTriangle(parts.corners, PIECE * cell, TOLERANCE * cell)
+    near = _near(look.middles, origin, cell, np.array(values.shape))
+    found = _everywhere(look, _lattice(origin, cell, np.array(values.shape)), near, BAND * cell)
+    return np.minimum(values, (found.distance - parts.shells[found.triangle]).reshape(values.shape))
+
+
+def _lattice(origin: Points, cell: float, shape: NDArray[np.intp]) -> Points:
+    """Where the samples are, (n, 3)."""
+    axes = [first + cell * np.arange(count) for first, count in zip(origin, shape, strict=True)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def _near(middles: Points, origin: Points, cell: float, shape: NDArray[np.intp]) -> NDArray[np.bool_]:

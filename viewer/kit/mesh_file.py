@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".obj", ".ply", ".glb", ".gltf", ".stl")
 FARTHEST = 1e6                  # metres from the origin: beyond, float32 is too coarse for any picture
-LONGEST_REASON = 120            # characters of a library's own message
 
 
 class MeshFileError(DemoscopeError):
@@ -79,8 +78,7 @@ def _explained(path: Path) -> Iterator[None]:
         if isinstance(error, OSError) and error.strerror:
             beside = f"{error.filename}: " if error.filename and Path(error.filename) != path else ""
             raise MeshFileError(f"mesh {path} cannot be read: {beside}{error.strerror}") from error
-        reason = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_REASON]
-        raise MeshFileError(f"mesh {path} is damaged or no mesh ({reason})") from error
+        raise MeshFileError(f"mesh {path} cannot be read: it is cut short, damaged or no mesh") from error
     finally:
         library.setLevel(level)
 

@@ -118,24 +118,29 @@ def _nearest_on_triangles(ap: Points, rows: Points) -> tuple[Points, Points, Ind
     return v, w, feature
 
 
-def _pieces(corners: Points, longest: float) -> tuple[Points, Indices, float]:
+def cut_to_pieces(corners: Points, longest: float) -> tuple[Points, Indices]:
     """Triangles halved across their longest side until none is longer than ``longest``.
 
-    Returns the pieces' middles (k, 3), the triangle each is of (k,) and how far a piece reaches from its middle.
+    Returns the pieces (k, 3, 3) and the triangle each is of (k,).
     """
-    middles, owners, reach = [], [], 0.0
+    done_pieces, done_owners = [], []
     pieces, owner, lengths = corners, np.arange(len(corners)), _lengths(corners)
     longest = _affordable(lengths, longest)
     while len(pieces):
         done = lengths.max(axis=1) <= longest
-        middle = pieces[done].mean(axis=1)
-        away = pieces[done] - middle[:, None]
-        reach = max(reach, float(np.einsum("ijk,ijk->ij", away, away).max(initial=0.0)) ** 0.5)
-        middles.append(middle)
-        owners.append(owner[done])
+        done_pieces.append(pieces[done])
+        done_owners.append(owner[done])
         pieces, owner = _halved(pieces[~done], lengths[~done]), np.repeat(owner[~done], 2)
         lengths = _lengths(pieces)
-    return np.concatenate(middles), np.concatenate(owners), reach
+    return np.concatenate(done_pieces), np.concatenate(done_owners)
+
+
+def _pieces(corners: Points, longest: float) -> tuple[Points, Indices, float]:
+    """The middles (k, 3) of the pieces, the triangle each is of (k,) and how far a piece reaches from its middle."""
+    pieces, owners = cut_to_pieces(corners, longest)
+    middles = pieces.mean(axis=1)
+    away = pieces - middles[:, None]
+    return middles, owners, float(np.einsum("ijk,ijk->ij", away, away).max(initial=0.0)) ** 0.5
 
 
 def _lengths(pieces: Points) -> Points:

@@ -31,9 +31,14 @@ def draw_color_scale(scale: ColorScale, box: Box, *, above: bool = False) -> Non
                            plate, 0.4 * em)
     _bar(behind, left, bottom - 2.4 * em, width, HEIGHT_EMS * em)
     _label(behind, scale.title, left, bottom - 3.7 * em)
-    _label(behind, f"{scale.low:g}{scale.unit}", left, bottom - 1.4 * em)
-    high = f"{scale.high:g}{scale.unit}"
+    _label(behind, reading(scale.low, scale.unit), left, bottom - 1.4 * em)
+    high = reading(scale.high, scale.unit)
     _label(behind, high, left + width - imgui.calc_text_size(high).x, bottom - 1.4 * em)
+
+
+def reading(number: float, unit: str) -> str:
+    """A number with its unit, apart from it unless that is a sign such as ° or %."""
+    return f"{number:g}{unit}" if unit.startswith(("°", "%")) else f"{number:g} {unit.strip()}".rstrip()
 
 
 def _bar(behind: imgui.ImDrawList, left: float, top: float, width: float, height: float) -> None:

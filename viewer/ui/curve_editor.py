@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
@@ -14,6 +14,7 @@ from imgui_bundle import imgui
 from viewer.engine.life_fields import LifeCurveField
 from viewer.kit.life_curve import MOST_POINTS, LifeCurve
 from viewer.ui import theme
+from viewer.ui.curve_axis import Plot, greatest, held_top, possible_tops
 from viewer.ui.grip import REACH_EMS, Grip, Place, nearest
 
 Line: TypeAlias = "list[imgui.ImVec2Like]"
@@ -24,6 +25,7 @@ HEIGHT_EMS = 5.0
 MARGIN_EMS = 0.45       # between the frame and the range, so that a point at a limit is whole
 HANDLE_EMS = 0.26
 LABEL_EMS = 0.8         # size of the numbers beside the plot
+LABEL_GAP_EMS = 0.35
 STEPS = 48              # of the polyline across the plot, and at least
 STEPS_BETWEEN = 6       # from one point to the next
 DECIMALS = 3            # of a position under the hand
@@ -31,49 +33,24 @@ GRID = 0.25, 0.5, 0.75
 FILL, FAINT = (*theme.ACCENT[:3], 0.22), (*theme.TEXT[:3], 0.09)
 
 
-@dataclass(frozen=True)
-class Plot:
-    """Where the range of a curve, 0 to 1 across and ``minimum`` to ``maximum`` up, lies on the screen."""
-
-    left: float
-    top: float
-    width: float
-    height: float
-    minimum: float
-    maximum: float
-
-    @property
-    def units(self) -> Place:
-        """What a pixel to the right and one downwards are worth."""
-        return 1.0 / self.width, (self.minimum - self.maximum) / self.height
-
-    def place(self, x: float, y: float) -> Place:
-        """A point of the curve on the screen."""
-        share = (self.maximum - y) / (self.maximum - self.minimum)
-        return self.left + x * self.width, self.top + share * self.height
-
-    def point(self, mouse: imgui.ImVec2) -> Place:
-        """The point of the range under the mouse, or the one nearest to it."""
-        across, down = self.units
-        x, y = across * (mouse.x - self.left), self.maximum + down * (mouse.y - self.top)
-        return min(1.0, max(0.0, x)), min(self.maximum, max(self.minimum, y))
-
-
 def draw_curve(field: LifeCurveField, value: LifeCurve, width: float) -> LifeCurve | None:
     """The plot of ``value``; returns the curve that the hand asks for, or None where it did nothing."""
     em, corner = imgui.get_font_size(), imgui.get_cursor_screen_pos()
-    gutter = _draw_limits(field, corner, em)
+    gutter = _gutter(field, em)
     box = imgui.ImVec2(max(1.0, width - gutter), HEIGHT_EMS * em)
     imgui.set_cursor_screen_pos(imgui.ImVec2(corner.x + gutter, corner.y))
     imgui.invisible_button("##value", box)
     margin = MARGIN_EMS * em
-    plot = Plot(corner.x + gutter + margin, corner.y + margin, max(1.0, box.x - 2 * margin), box.y - 2 * margin,
-                field.minimum, field.maximum)
-    grip, over = Grip(), -1
     hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
+    held = held_top(field, value, hovered=hovered, active=active)
+    under_hand = Plot(corner.x + gutter + margin, corner.y + margin, max(1.0, box.x - 2 * margin),
+                      box.y - 2 * margin, field.minimum, held)
+    plot = replace(under_hand, maximum=max(held, greatest(value)))
+    _draw_limits(field, plot, corner, gutter)
+    grip, over = Grip(), -1
     if hovered or active:
         over = nearest([plot.place(*point) for point in value.points], REACH_EMS * em)
-    new = _handled(grip, field, value, plot, over) if hovered or active else None
+    new = _handled(grip, field, value, under_hand, over) if hovered or active else None
     lit = grip.held if active and grip.held < len(value.points) else over
     _draw_plot(plot, value, margin, lit)
     if lit >= 0:
@@ -93,7 +70,7 @@ def _handled(grip: Grip, field: LifeCurveField, value: LifeCurve, plot: Plot, ov
         if not 0 <= grip.held < len(value.points):
             return None
         to = grip.dragged(plot.units)
-        return _moved(field, value, grip.held, to) if to else None
+        return _moved(field, value, grip.held, to, plot) if to else None
     return _without(value, over) if over >= 0 and imgui.is_mouse_clicked(1) else None
 
 
@@ -116,19 +93,19 @@ def _added(grip: Grip, field: LifeCurveField, value: LifeCurve, plot: Plot) -> L
     if len(value.points) >= MOST_POINTS or any(abs(x - other) < 10.0 ** -DECIMALS for other, _ in value.points):
         return None
     here = float(value(x))
-    y = _rounded(field, here if abs(here - y) < REACH_EMS * imgui.get_font_size() * -plot.units[1] else y)
+    y = _rounded(field, here if abs(here - y) < REACH_EMS * imgui.get_font_size() * -plot.units[1] else y, plot)
     points = tuple(sorted((*value.points, (x, y))))
     grip.take(points.index((x, y)), (x, y), new=True)
     return LifeCurve(points)
 
 
-def _moved(field: LifeCurveField, value: LifeCurve, index: int, to: Place) -> LifeCurve | None:
+def _moved(field: LifeCurveField, value: LifeCurve, index: int, to: Place, plot: Plot) -> LifeCurve | None:
     """The curve with one point elsewhere, between its neighbours and within the limits."""
     points, gap = list(value.points), 10.0 ** -DECIMALS
     low = points[index - 1][0] + gap if index else 0.0
     high = points[index + 1][0] - gap if index + 1 < len(points) else 1.0
     x = round(min(high, max(low, to[0])), DECIMALS)
-    points[index] = x if low - gap / 2 <= x <= high + gap / 2 else points[index][0], _rounded(field, to[1])
+    points[index] = x if low - gap / 2 <= x <= high + gap / 2 else points[index][0], _rounded(field, to[1], plot)
     return LifeCurve(tuple(points)) if tuple(points) != value.points else None
 
 
@@ -138,25 +115,30 @@ def _without(value: LifeCurve, index: int) -> LifeCurve | None:
     return LifeCurve(points) if points else None
 
 
-def _rounded(field: LifeCurveField, y: float) -> float:
-    """``y`` within the limits, to a hundredth of their distance or finer, which is less than a pixel as a rule."""
-    decimals = 2 - math.floor(math.log10(field.maximum - field.minimum))
+def _rounded(field: LifeCurveField, y: float, plot: Plot) -> float:
+    """``y`` within the limits, to a hundredth of the axis or finer, which is less than a pixel as a rule."""
+    decimals = 2 - math.floor(math.log10(plot.maximum - plot.minimum))
     return min(field.maximum, max(field.minimum, round(y, decimals)))
 
 
 # The picture
 
-def _draw_limits(field: LifeCurveField, corner: imgui.ImVec2, em: float) -> float:
-    """The limits at the left, as on any plot; returns the room that they take."""
-    size, quiet = LABEL_EMS * em, imgui.get_color_u32(imgui.ImVec4(*theme.QUIET_TEXT))
-    labels = [f"{field.maximum:g}", f"{field.minimum:g}"]
-    widths = [LABEL_EMS * imgui.calc_text_size(text).x for text in labels]
-    room = max(widths)
-    heights = (MARGIN_EMS * em - 0.5 * size, (HEIGHT_EMS - MARGIN_EMS) * em - 0.5 * size)
-    for text, width, height in zip(labels, widths, heights, strict=True):
-        at = imgui.ImVec2(corner.x + room - width, corner.y + height)
-        imgui.get_window_draw_list().add_text(imgui.get_font(), size, at, quiet, text)
-    return room + 0.35 * em
+def _gutter(field: LifeCurveField, em: float) -> float:
+    """The room for the numbers at the left: for all that the axis may end with, lest it change under the hand."""
+    ends = field.minimum, *possible_tops(field)
+    return LABEL_EMS * max(imgui.calc_text_size(f"{end:g}").x for end in ends) + LABEL_GAP_EMS * em
+
+
+def _draw_limits(field: LifeCurveField, plot: Plot, corner: imgui.ImVec2, gutter: float) -> None:
+    """The ends of the axis at the left, as on any plot; while a point is dragged beyond the top, its reading tells."""
+    em, quiet = imgui.get_font_size(), imgui.get_color_u32(imgui.ImVec4(*theme.QUIET_TEXT))
+    size, ends = LABEL_EMS * em, [(plot.minimum, plot.top + plot.height)]
+    if plot.maximum in possible_tops(field):
+        ends.append((plot.maximum, plot.top))
+    for end, y in ends:
+        left = corner.x + gutter - LABEL_GAP_EMS * em - LABEL_EMS * imgui.calc_text_size(f"{end:g}").x
+        place = imgui.ImVec2(left, y - 0.5 * size)
+        imgui.get_window_draw_list().add_text(imgui.get_font(), size, place, quiet, f"{end:g}")
 
 
 def _draw_plot(plot: Plot, value: LifeCurve, margin: float, lit: int) -> None:

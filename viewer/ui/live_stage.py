@@ -11,6 +11,7 @@ from pathlib import Path
 import moderngl
 
 from viewer.engine.catalog import SceneEntry
+from viewer.engine.file_stamp import file_stamp
 from viewer.engine.scene import ColorScale
 from viewer.engine.shaders import ShaderError
 from viewer.engine.stage import Stage
@@ -59,7 +60,7 @@ class LiveStage:
         self._failed_doing, self._failed_with = "", -1
         self._shader_problem: Problem | None = None
         self._scene_problem: Problem | None = None
-        self._scene_stamp = _stamp(stage.entry.file)
+        self._scene_stamp = file_stamp(stage.entry.file)
         self._since_watch = 0.0
         self._drawn: object = None
         self._query = query
@@ -98,7 +99,7 @@ class LiveStage:
         """Take over edited shader and scene files."""
         error = self.stage.refresh_shaders()
         self._shader_problem = problem_of(error, self.stage.entry) if error else None
-        stamp = _stamp(self.stage.entry.file)
+        stamp = file_stamp(self.stage.entry.file)
         if stamp != self._scene_stamp:
             self._scene_stamp = stamp
             self.reload()
@@ -165,14 +166,6 @@ class LiveStage:
         if self._query_pending:
             self.gpu_milliseconds = self._query.elapsed * 1e-6
             self._query_pending = False
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    try:
-        status = path.stat()
-        return status.st_mtime_ns, status.st_size
-    except OSError:
-        return 0, -1
 
 
 def _line_of(path: Path, line: int) -> str:

@@ -79,9 +79,18 @@ def _interval(field: Interval, value: tuple[float, float], width: float) -> tupl
     flags = ALWAYS_CLAMP | (LOGARITHMIC if field.logarithmic else 0)
     low, high = field.widget_range
     changed, start, end = imgui.drag_float_range2(
-        "##value", *value, (high - low) / DRAG_PIXELS, field.minimum, field.maximum, number_format(field, "%.4g"), None,
-        flags)
+        "##value", *value, (high - low) / DRAG_PIXELS, field.minimum, field.maximum,
+        _interval_format(field, value, width), None, flags)
     return (_decimal(start), _decimal(end)) if changed else None
+
+
+def _interval_format(field: Interval, value: tuple[float, float], width: float) -> str:
+    """How both numbers are written, each in half the width: with the unit only where there is room for it."""
+    style = imgui.get_style()
+    room = 0.5 * (width - style.item_inner_spacing.x) - 2.0 * style.frame_padding.x
+    numbers = *value, field.minimum, field.maximum, 0.8888     # lest the unit come and go under the hand
+    widest = max(imgui.calc_text_size(f"{number:.4g} {field.unit}".rstrip()).x for number in numbers)
+    return number_format(field, "%.4g") if widest <= room else "%.4g"
 
 
 def _toggle(field: Toggle, value: bool, width: float) -> bool | None:

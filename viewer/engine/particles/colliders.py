@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viewer.engine.declarations import choice, color, file, formula, integer, slider, toggle
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
-from viewer.engine.particles.obstacle_samples import SUFFIXES, Sampled, file_stamp, sampled_formula, sampled_mesh
+from viewer.engine.particles.obstacle_samples import SUFFIXES, Sampled, obstacle_stamp, sampled_formula, sampled_mesh
 from viewer.engine.particles.solid import ShadedMesh
 from viewer.engine.program import Program
 from viewer.kit.field_function import FieldFunction
@@ -205,7 +205,7 @@ class Colliders:
         p = self.params
         wanted: tuple[object, ...]
         if p.obstacle == "mesh":
-            wanted = ("mesh", p.obstacle_detail, *file_stamp(p.obstacle_file))
+            wanted = ("mesh", p.obstacle_detail, *obstacle_stamp(p.obstacle_file))
         else:
             function = FieldFunction(p.obstacle_formula, tuple(p.numbers(p.obstacle_formula).items()))
             wanted = ("formula", p.obstacle_detail, function, p.obstacle_reach)

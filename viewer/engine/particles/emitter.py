@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.declarations import choice, color, file, slider, toggle
 from viewer.engine.fields import ParameterError
+from viewer.engine.file_stamp import file_stamp
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
 from viewer.engine.program import Program
@@ -39,6 +40,7 @@ SOURCES = {
     "edge": "Along rims, creases and borders, as many on each metre",
     "volume": "All through the inside, as many in each cubic metre; flat shapes have only their surface",
 }
+Stamp: TypeAlias = tuple[str, int, int] | None
 Surface: TypeAlias = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
 
 
@@ -79,9 +81,9 @@ class Emitter:
 
     def __init__(self, gpu: Gpu, params: EmitterParameters) -> None:
         self.gpu, self.params = gpu, params
-        self._followed = -1
-        self._made: tuple[str, str, Path | None] | None = None
-        self._read: tuple[Path, FileMesh] | None = None
+        self._followed: tuple[int, Stamp] | None = None
+        self._made: tuple[str, str, Stamp] | None = None
+        self._read: tuple[Stamp, FileMesh] | None = None
         self._entries = 0
         self._textures: list[moderngl.Texture] = []
         self._shaded: tuple[tuple[object, ...], shapes.ShadedMesh] | None = None
@@ -92,14 +94,21 @@ class Emitter:
         Raises ParameterError or MeshFileError for a mesh that particles cannot come from; what stood before
         then still stands.
         """
-        if self._followed == self.params.revision:
+        stamp = self.stamp
+        if self._followed == (self.params.revision, stamp):
             return
         shape, source = self.params.emitter, self.params.emit_from
-        wanted = (shape, source, self.params.emitter_file if shape == "mesh" else None)
+        wanted = (shape, source, stamp)
         if shape in ("mesh", "fish") and wanted != self._made:
             self._send(_table_of(self._mesh(), source, self._name))
             self._made = wanted
-        self._followed = self.params.revision
+        self._followed = self.params.revision, stamp
+
+    @property
+    def stamp(self) -> Stamp:
+        """Which version of which file particles come from; None where they come from none."""
+        path = self.params.emitter_file
+        return file_stamp(path) if self.params.emitter == "mesh" and path is not None else None
 
     def constants(self) -> str:
         """GLSL that says which shape it is and which part of it particles come from."""
@@ -138,15 +147,15 @@ class Emitter:
         return f"mesh {self.params.emitter_file}" if self.params.emitter == "mesh" else "the fish"
 
     def _mesh(self) -> FileMesh:
-        """The mesh that particles come from; a file is read once."""
+        """The mesh that particles come from; a file is read once, and again where it has changed."""
         if self.params.emitter == "fish":
             return _fish()
-        path = self.params.emitter_file
+        path, stamp = self.params.emitter_file, self.stamp
         if path is None:
             raise ParameterError(f"emitter = mesh needs a file: set emitter_file to one that ends in "
                                  f"{', '.join(SUFFIXES)}")
-        if self._read is None or self._read[0] != path:
-            self._read = path, _outside_out(read_mesh(path))
+        if self._read is None or self._read[0] != stamp:
+            self._read = stamp, _outside_out(read_mesh(path))
         return self._read[1]
 
     def _send(self, table: SamplingTable) -> None:
@@ -165,7 +174,7 @@ class Emitter:
     def _local_surface(self) -> shapes.ShadedMesh:
         """The shape around its own origin, made anew only when it is another."""
         params = self.params
-        key = (params.emitter, params.emitter_size, params.emitter_thickness, params.emitter_file)
+        key = (params.emitter, params.emitter_size, params.emitter_thickness, self.stamp)
         if self._shaded is None or self._shaded[0] != key:
             self._shaded = key, self._shade()
         return self._shaded[1]

@@ -98,7 +98,7 @@ class ParticleInspector:
         named = [Label(name, _anchor(place + 1.12 * way), size=0.85, color=COLORS[name], plate=PLATE)
                  for name, way in self._arrows(self._texels, eye).items()]
         lines = [f"{name} {value}" for name, value in self._rows(self._texels)]
-        return [*named, Label("\n".join(lines), (-0.96, -0.94), size=0.85, color="#f2f4f7", align=(0.0, 0.0),
+        return [*named, Label("\n".join(lines), (-0.96, 0.94), size=0.85, color="#f2f4f7", align=(0.0, 1.0),
                               plate=PLATE)]
 
     def remarks(self) -> Sequence[str]:
@@ -116,7 +116,7 @@ class ParticleInspector:
             return None
         forces = self._forces(self._texels)
         rows = [*self._rows(self._texels), *((f"{name} (N)", _vector(force)) for name, force in forces.items())]
-        return Table(("inspected", "value"), rows)
+        return Table(("quantity", "value"), rows)
 
     def _rows(self, texels: Mapping[str, NDArray[np.float32]]) -> list[tuple[str, str]]:
         lifetime, size, mass, drag = map(float, texels["nature"])

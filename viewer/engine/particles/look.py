@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from viewer.engine.annotations import Label
 from viewer.engine.declarations import choice, curve, file, gradient, integer, slider, toggle
 from viewer.engine.params import Parameters
 from viewer.engine.particles.cascade import FAMILIES, moments
@@ -28,6 +29,10 @@ COLOURINGS = {
     "generation": "Whether it is a child, a grandchild ...", "speed": "How fast it moves",
     "mass": "Its mass", "size": "Its diameter"}
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp")
+GENERATIONS = (         # as they are called, and their colours: those of shaders/lib/color.glsl, okabe_ito 1 to 4
+    ("from the emitter", "#e69f00"), ("child", "#56b4e9"), ("grandchild", "#009e73"),
+    ("great-grandchild", "#f0e442"))
+PLATE = "#10141ad0"
 GRADIENTS = ("color", *(f"{family}_color" for family in FAMILIES))
 
 
@@ -38,8 +43,8 @@ class LookParameters(Parameters):
     stretch: float = slider(0.03, 0.0, 1.0, "It is as long as its way in so many seconds", unit="s", group=LOOK,
                             handy=(0.0, 0.2), when="billboard=velocity")
     sprite: str = choice("spot", SPRITES, "What is drawn on the polygon", group=LOOK)
-    texture = file(None, "The picture on each polygon; what its alpha says is left out", suffixes=SUFFIXES,
-                   rebuild=False, group=LOOK, when="sprite=texture")
+    texture = file(None, "A picture for each polygon, without what its alpha leaves out: name it, then choose "
+                   "sprite = texture", suffixes=SUFFIXES, rebuild=False, group=LOOK)
     blending: str = choice("additive", BLENDINGS, "How sprites and what lies behind come together", group=LOOK)
     color: Gradient = gradient("0:#f4fbff, 0.35:#bfe4ff, 0.75:#7fbcf5, 1:#4d86d6",
                                "Colour over the life of those from the emitter", group=LOOK)
@@ -84,7 +89,7 @@ def colouring_range(params: Any) -> tuple[float, float]:
         low, high = min(size[0] for size in born), max(size[1] for size in born)
     else:
         return 0.0, 1.0
-    return (low, high) if low < high else (0.0, high)
+    return (low, high) if low < high else (0.0, 2.0 * high)
 
 
 def color_scale(params: Any) -> ColorScale | None:
@@ -96,6 +101,19 @@ def color_scale(params: Any) -> ColorScale | None:
     title, unit = {"age": ("Age in lifetimes", ""), "speed": ("Speed", "m/s"), "mass": ("Mass", "kg"),
                    "size": ("Diameter", "m")}[params.colouring]
     return ColorScale(title, *colouring_range(params), unit)
+
+
+def generation_key(params: Any) -> tuple[Label, ...]:
+    """Which colour means which generation, in the corner where a colour scale would be; nothing else has one."""
+    if params.colouring != "generation" or params.overdraw:
+        return ()
+    there = GENERATIONS[:1 + sum(when != "never" for when in moments(params))]
+
+    def written(lines: list[str], color: str, plate: str = "") -> Label:
+        return Label("\n".join(lines), (-0.96, -0.94), size=0.85, color=color, align=(0.0, 0.0), plate=plate)
+
+    squares = [written(["■" if other == name else "" for other, _ in there], color) for name, color in there]
+    return written([f"      {name}" for name, _ in there], "#f2f4f7", PLATE), *squares
 
 
 def look_constants(params: Any) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from viewer.engine.fields import ParameterError
+from viewer.engine.file_stamp import file_stamp
 from viewer.engine.particles.solid import ShadedMesh
 from viewer.errors import DemoscopeError
 from viewer.kit.field_function import FieldFunction
@@ -38,7 +39,8 @@ def sampled_mesh(path: Path, samples: int) -> Sampled:
         found = read_mesh(path)
         field = mesh_distance_field(found.vertices, found.triangles, samples)
     except (DemoscopeError, ValueError) as error:
-        raise ParameterError(f"obstacle_file = {path.name}: {error}") from error
+        reason = str(error).removeprefix(f"mesh {path} ")       # which names the file once more
+        raise ParameterError(f"obstacle_file = {path.name}: {reason}") from error
     if found.normals is not None and found.normals.any(axis=1).all():
         return Sampled(field, (found.vertices, found.normals, found.triangles))
     places, faces = welded(found.vertices, found.triangles)
@@ -63,13 +65,9 @@ def sampled_formula(function: FieldFunction, reach: float, samples: int) -> Samp
     return Sampled(found.field, (found.vertices, normals, found.triangles))
 
 
-def file_stamp(path: Path | None) -> tuple[object, ...]:
-    """What tells one mesh file, or version of it, from another; raises ParameterError without one."""
+def obstacle_stamp(path: Path | None) -> tuple[object, ...]:
+    """What tells one mesh file, or version of it, from another; raises ParameterError where none is named."""
     if path is None:
         raise ParameterError(f"obstacle = mesh needs a mesh: set obstacle_file to a file that ends in "
                              f"{', '.join(SUFFIXES)}")
-    try:
-        status = path.stat()
-    except OSError as error:
-        raise ParameterError(f"obstacle_file = {path}: {error.strerror}") from error
-    return str(path), status.st_mtime_ns, status.st_size
+    return file_stamp(path)

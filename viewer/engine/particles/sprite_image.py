@@ -6,17 +6,23 @@ drivers differ in both.
 
 from __future__ import annotations
 
+import warnings
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.fields import ParameterError
+from viewer.engine.file_stamp import file_stamp
 from viewer.engine.gpu import Gpu
 from viewer.kit.noise import noise
+from viewer.kit.srgb import linear_light
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 Texels = NDArray[np.floating[Any]]
 IMAGE_SIZE = 256
@@ -39,7 +45,7 @@ class SpriteImage:
         sprite, path = self.params.sprite, self.params.texture
         if sprite == "texture" and path is None:
             raise ParameterError("sprite = texture needs a picture: set texture")
-        shows = (path, _stamp(path)) if sprite == "texture" else sprite if sprite == "puff" else None
+        shows = file_stamp(path) if sprite == "texture" else sprite if sprite == "puff" else None
         if shows is None or shows == self._shows:
             return
         texels = image_texels(path) if sprite == "texture" else puff_noise()
@@ -66,23 +72,37 @@ def with_smaller_copies(gpu: Gpu, texels: Texels, *, repeats: bool) -> Any:
 
 def image_texels(path: Path) -> Texels:
     """A picture in the middle of a square (n, n, 4), lowest row first: linear light, times its alpha, and alpha."""
-    from PIL import Image
-
     try:
-        with Image.open(path) as image:
-            if max(image.size) > LONGEST_SIDE:
-                raise ParameterError(f"texture = {path} is {image.width} x {image.height} pixels, which is more than "
-                                     f"{LONGEST_SIDE} along a side")
+        with _opened(path) as image:
             blocks = max(1, max(image.size) // (4 * IMAGE_SIZE))
             reduced = image.convert("RGBA").convert("RGBa").reduce(blocks).convert("RGBA")
-            straight = np.asarray(reduced, np.float32) / 255.0
+            straight = np.asarray(reduced)
     except ParameterError:
         raise
     except Exception as error:
         raise ParameterError(f"texture = {path} is not a picture that can be read: {error}".splitlines()[0]) from error
-    encoded, alpha = straight[..., :3], straight[..., 3:]
-    light = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    light = np.array([linear_light(level / 255.0) for level in range(256)], np.float32)[straight[..., :3]]
+    alpha = straight[..., 3:].astype(np.float32) / 255.0
     return _in_a_square(np.concatenate([light * alpha, alpha], axis=-1))[::-1]
+
+
+def _opened(path: Path) -> Image.Image:
+    """A picture whose pixels are still to be read; raises ParameterError for one with too many of them."""
+    from PIL import Image
+
+    try:
+        with warnings.catch_warnings():     # the limit here is lower than that of which Pillow warns
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(path)
+    except FileNotFoundError:
+        raise ParameterError(f"texture = {path} is not a file that exists") from None
+    except Image.DecompressionBombError:
+        raise ParameterError(f"texture = {path} has more than {LONGEST_SIDE} pixels along a side") from None
+    if max(image.size) > LONGEST_SIDE:
+        image.close()
+        raise ParameterError(f"texture = {path} is {image.width} x {image.height} pixels, which is more than "
+                             f"{LONGEST_SIDE} along a side")
+    return image
 
 
 def _in_a_square(texels: Texels) -> Texels:
@@ -130,12 +150,3 @@ def _tiled_noise(x: Texels, y: Texels, cells: int, layer: float) -> Texels:
         total += weight * noise((x - right) * cells + 0.5, (y - up) * cells + 0.5, layer)
         variance += weight**2
     return np.asarray(total / np.sqrt(variance))
-
-
-def _stamp(path: Path) -> tuple[int, int]:
-    """What tells whether a file changed; raises ParameterError where it has gone."""
-    try:
-        status = path.stat()
-    except OSError:
-        raise ParameterError(f"texture = {path} is not a file that exists") from None
-    return status.st_mtime_ns, status.st_size

@@ -6,6 +6,7 @@ from typing import Any
 
 import moderngl
 
+from viewer.engine.annotations import Label
 from viewer.engine.gpu import Gpu
 from viewer.engine.particles import appearance, look
 from viewer.engine.particles.appearance import Appearance
@@ -69,6 +70,10 @@ class Sprites:
     def color_scale(self) -> ColorScale | None:
         """What the colours now stand for, if for a number."""
         return look.color_scale(self.params)
+
+    def labels(self) -> tuple[Label, ...]:
+        """What the colours now stand for, if for generations."""
+        return look.generation_key(self.params)
 
     @property
     def overdraw(self) -> Overdraw:

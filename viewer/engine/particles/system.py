@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer.engine.clock import FRAME_SECONDS
+from viewer.engine.file_stamp import file_stamp
 from viewer.engine.gpu import Gpu
 from viewer.engine.particles.births import Newborn, Nursery
 from viewer.engine.particles.cascade import FAMILIES, CascadeParameters, has_children
@@ -111,12 +112,13 @@ class ParticleSystem:
             self.gpu.refresh()
 
     def steered_by(self) -> Hashable:
-        """The values of all parameters that decide how particles move."""
+        """The values of all parameters that decide how particles move, and which files they name."""
         if self.params.revision != self._key[0]:
             values = tuple(str(self.params.field(name).stored(self.params.get(name))) for name in STEERING)
             numbers = self.params.numbers(self.params.obstacle_formula)
             self._key = self.params.revision, (*values, *numbers.items())
-        return self._key[1]
+        obstacle = self.params.obstacle_file if self.params.obstacle == "mesh" else None
+        return self._key[1], self.emitter.stamp, file_stamp(obstacle) if obstacle else None
 
     def begin(self) -> None:
         """Stand at the beginning, as the parameters now are: the first burst, and what warming up brings.
