@@ -3,6 +3,7 @@
 ARGS ?=
 PYTHON ?=
 python := .venv/bin/python
+side-by-side := --numprocesses auto --maxprocesses 4 --dist loadfile
 extras-test := [test]
 extras-bench := [bench]
 
@@ -26,7 +27,7 @@ test: libraries .venv/.ready-test
 	@status=0; \
 	$(python) -m ruff check . || status=1; \
 	$(python) -m mypy --strict viewer scenes || status=1; \
-	MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 $(python) -m pytest $(ARGS) || status=1; \
+	MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 $(python) -m pytest $(side-by-side) $(ARGS) || status=1; \
 	exit $$status
 
 bench: libraries .venv/.ready-bench
