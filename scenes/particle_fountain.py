@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import moderngl
-import numpy as np
 
 from viewer import (
     Click,
@@ -36,7 +35,6 @@ from viewer import (
     trail_bytes,
 )
 
-SECONDS_PER_FRAME = 1.0 / 60.0
 GROUND_COLOR = (0.42, 0.46, 0.52)
 BACKDROPS = {
     "studio": ("#c9ced6", "#7f8b9c"), "dusk": ("#3d4d63", "#131b29"), "night": ("#0d1017", "#020306"),
@@ -132,9 +130,6 @@ class ParticleFountain(Scene):
     def color_scale(self) -> ColorScale | None:
         return self.sprites.color_scale()
 
-    def turns_with_camera(self) -> bool:
-        return False
-
     def setting(self) -> Studio:
         p = self.params
         level = p.ground and not p.ground_tilt
@@ -154,18 +149,13 @@ class ParticleFountain(Scene):
             "potential_energy": potential, "fastest": fastest, "step_ms": self.system.step_ms,
             "draw_ms": self.draw_ms()}
         inspected = self.inspector.table()
-        return numbers | {"live": self.live_count()} | ({"inspected": inspected} if inspected else {})
+        return numbers | {"live": self.system.live_count()} | ({"inspected": inspected} if inspected else {})
 
     def draw_ms(self) -> float:
-        """How long particles and trails take to draw, in a picture as large as the present one."""
-        looks = self.params.revision, self.gpu.generation
-        return self.timer.milliseconds(self.gpu.context.fbo.size, self._draw_particles, looks)
-
-    def live_count(self) -> Curve:
-        """How many particles were alive at each frame so far."""
-        live = self.system.tally.live
-        seconds = SECONDS_PER_FRAME * np.arange(len(live))
-        return Curve("time", seconds, {"alive": live}, x_label="time (s)", y_label="particles alive")
+        """How long particles, trails or strands take to draw, in a picture as large as the present one."""
+        looks, strands = (self.params.revision, self.gpu.generation), self.strands
+        draw = (lambda _: strands.draw()) if strands else self._draw_particles
+        return self.timer.milliseconds(self.gpu.context.fbo.size, draw, looks)
 
     def _draw_particles(self, scene_depth: moderngl.Texture) -> None:
         if not self.strands:

@@ -84,3 +84,8 @@ def sample_places(shape: tuple[int, ...]) -> NDArray[np.float64]:
 def crossed_edge_count(inside: NDArray[np.bool_]) -> int:
     """How many edges of the grid join samples of which one is inside."""
     return sum(int(np.diff(inside, axis=axis).sum()) for axis in range(3))
+
+
+def triangle_soup(vertices: NDArray[np.float64], triangles: Triangles) -> tuple[NDArray[np.float64], Triangles]:
+    """The same triangles, each with three vertices of its own."""
+    return vertices[triangles.ravel()], np.arange(triangles.size, dtype=np.int32).reshape(-1, 3)

@@ -50,14 +50,6 @@ def test_flat_shapes_face_up(make: Callable[[], mesh.Mesh], area: float) -> None
     assert trimesh.Trimesh(vertices, triangles, process=False).area == pytest.approx(area, rel=0.005)
 
 
-def test_flat_shading_gives_each_triangle_its_own_vertices() -> None:
-    """With its normal, where it was."""
-    vertices, normals, triangles = shapes.flat_shaded(*shapes.box((1, 1, 1)))
-    assert vertices.shape == normals.shape == (36, 3)
-    assert np.allclose((vertices * normals).sum(axis=1), 1.0)
-    assert triangles.tolist() == np.arange(36).reshape(12, 3).tolist()
-
-
 def test_a_box_is_parted_at_its_edges_and_a_sphere_nowhere() -> None:
     """24 vertices with the sides' normals, also at its corners; those of a sphere look away from its centre."""
     vertices, normals, triangles = shapes.creased(*shapes.box((1, 2, 3)))

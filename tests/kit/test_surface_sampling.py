@@ -7,6 +7,7 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
+from tests.kit.surface_checks import triangle_soup
 from viewer.kit import mesh, shapes
 from viewer.kit.interior_points import clearance, interior_spans, volume_table
 from viewer.kit.surface_sampling import (
@@ -100,7 +101,7 @@ def test_where_no_edge_is_sharp_all_of_them_count() -> None:
     vertices, triangles = mesh.ico_sphere(3)
     table = edge_table(vertices, triangles)
     assert table.places.shape == (len(triangles) * 3 // 2, 2, 4) and table.normals.shape[1:] == (1, 3)
-    soup, _, own = shapes.flat_shaded(vertices, triangles)
+    soup, own = triangle_soup(vertices, triangles)
     again = edge_table(soup, own)
     assert len(again.places) == len(table.places)
     length = np.linalg.norm(table.places[:, 0, :3] - table.places[:, 1, :3], axis=1)
@@ -123,7 +124,7 @@ def test_closed_means_an_inside() -> None:
     turned = triangles.copy()
     turned[0] = turned[0, ::-1]
     assert not is_closed(vertices, turned)
-    soup, _, own = shapes.flat_shaded(vertices, triangles)
+    soup, own = triangle_soup(vertices, triangles)
     assert is_closed(soup, own)
 
 

@@ -15,7 +15,7 @@ from typing import Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from viewer.kit.life_points import LifeError, life_pairs, number_text, shown
+from viewer.kit.life_points import LifeError, life_pairs, number_in, number_text
 
 __all__ = ["LARGEST", "MOST_POINTS", "LifeCurve", "LifeError"]
 
@@ -113,13 +113,7 @@ def _end_slope(width: float, next_width: float, chord: float, next_chord: float)
 
 
 def _finite(whole: object, y: object) -> float:
-    try:
-        if isinstance(y, bool):
-            raise TypeError
-        value = float(y) + 0.0      # type: ignore[arg-type]    # makes -0 a plain 0
-    except (TypeError, ValueError, OverflowError):
-        raise LifeError(NOUN, whole, f"has the value {shown(y) or 'nothing'}, which is not a number; "
-                                     f"write it like {EXAMPLE}") from None
+    value = number_in(NOUN, whole, "value", y, EXAMPLE)
     if not math.isfinite(value):
         raise LifeError(NOUN, whole, f"has the value {value}, which is not a finite number")
     if abs(value) > LARGEST:

@@ -83,14 +83,19 @@ def _from_sequence(noun: str, value: object, example: str) -> list[tuple[object,
     return pairs
 
 
-def _position(noun: str, value: object, position: object, example: str) -> float:
+def number_in(noun: str, value: object, part: str, number: object, example: str) -> float:
+    """``number``, the position or value that ``part`` says of ``value``; raises LifeError for what is no number."""
     try:
-        if isinstance(position, bool):
+        if isinstance(number, bool):
             raise TypeError
-        here = float(position) + 0.0    # type: ignore[arg-type]    # makes -0 a plain 0
+        return float(number) + 0.0      # type: ignore[arg-type]    # makes -0 a plain 0
     except (TypeError, ValueError, OverflowError):
-        raise LifeError(noun, value, f"has the position {shown(position) or 'nothing'}, which is not a number; "
+        raise LifeError(noun, value, f"has the {part} {shown(number) or 'nothing'}, which is not a number; "
                                      f"write it like {example}") from None
+
+
+def _position(noun: str, value: object, position: object, example: str) -> float:
+    here = number_in(noun, value, "position", position, example)
     if not 0.0 <= here <= 1.0:
         raise LifeError(noun, value, f"has the position {number_text(here)}, which is outside 0 to 1")
     return here

@@ -66,12 +66,6 @@ def cone(radius: float, height: float, segments: int = 96, rings: int = 12) -> M
     return np.concatenate([*circles, poles]), np.concatenate([bottom, _bands(index), top]).astype(np.int32)
 
 
-def flat_shaded(vertices: Vertices, triangles: Triangles) -> ShadedMesh:
-    """Three vertices of its own for each triangle, with its normal: vertices (3m, 3), normals, triangles (m, 3)."""
-    normals = np.repeat(face_normals(vertices, triangles), 3, axis=0)
-    return vertices[triangles.ravel()], normals, np.arange(triangles.size, dtype=np.int32).reshape(-1, 3)
-
-
 def creased(vertices: Vertices, triangles: Indices, degrees: float = 30.0) -> ShadedMesh:
     """Vertices parted along edges where faces meet at more than ``degrees``, each with the normal of its side.
 

@@ -28,6 +28,7 @@ class DrawTimer:
         """
         layer, context = self._layer_of(size), self.gpu.context
         with drawing_into(self.gpu, layer, size):
+            layer.clear()
             try:
                 if key != self._warm:
                     self._seconds(draw)
@@ -54,6 +55,5 @@ class DrawTimer:
             far = np.ones(size[::-1], np.float32)
             self._depth = self.gpu.texture(size, 1, far, dtype="f4", label="timed sprites' depth")
             self._layer = self.gpu.framebuffer([color], label="timed sprites")
-            self._layer.clear()
             self._made = [self._layer, color, self._depth]
         return self._layer

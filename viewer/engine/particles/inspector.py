@@ -15,7 +15,6 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.matrices import Matrix
 from viewer.engine.params import Parameters
 from viewer.engine.particles.lifeline import Lifeline, Reliving
-from viewer.engine.particles.pool import LASTING, MOVING
 from viewer.engine.particles.strokes import StrokeBrush, arrow, path
 from viewer.engine.particles.system import ParticleSystem
 
@@ -56,12 +55,7 @@ class ParticleInspector:
             return
         found = np.flatnonzero(pool.alive[:pool.used] & (pool.serial[:pool.used] == int(number)))
         if len(found):
-            self._texels = {name: rows[found[0]] for name, rows in pool.read(*MOVING, *LASTING).items()}
-
-    @property
-    def found(self) -> bool:
-        """Whether the particle that is looked at lives now."""
-        return self._texels is not None
+            self._texels = pool.at(int(found[0]))
 
     def click(self, click: Click) -> Mapping[str, object]:
         """Choose the particle nearest to a click, or let go where none is near."""

@@ -131,6 +131,14 @@ class Pool:
         """The texels of the used slots, (used, 4) each."""
         return {name: self._rows_of(name)[:self.used] for name in names}
 
+    def at(self, slot: int) -> dict[str, NDArray[np.float32]]:
+        """The texels of one slot, (4,) each, by texture."""
+        texels = {name: np.empty(4, np.float32) for name in (*MOVING, *LASTING)}
+        place = slot % self.width, slot // self.width
+        for attachment, texel in enumerate(texels.values()):
+            self._settling[0].read_into(texel, (*place, 1, 1), 4, attachment=attachment, alignment=1, dtype="f4")
+        return texels
+
     def snapshot(self) -> PoolSnapshot:
         """All that lives, to be put back by ``restore``."""
         texels = {name: self._rows_of(name) for name in (*MOVING, *LASTING)}

@@ -24,7 +24,7 @@ from viewer.engine.particles.qualities import EmissionParameters, QualityParamet
 from viewer.engine.particles.schedule import Births, Schedule, ScheduleState
 from viewer.engine.particles.tally import Tally
 from viewer.engine.rewind import Snapshot
-from viewer.engine.scene import Geometry
+from viewer.engine.scene import Curve, Geometry
 
 
 class ParticleParameters(EmissionParameters, QualityParameters, ForceParameters, ColliderParameters,
@@ -39,8 +39,6 @@ STEERING = tuple(name for name in ParticleParameters.declared if name not in SHO
 
 class Companion(Protocol):
     """What remembers something of the particles from step to step, as trails do, and goes back in time with them."""
-
-    bytes_per_particle: int
 
     def begin(self) -> None:
         """Nothing has happened yet."""
@@ -200,6 +198,11 @@ class ParticleSystem:
         squared = (velocity**2).sum(axis=1)
         potential = self.forces.potential_energy(arrays["position"].astype(np.float64), mass)
         return float(0.5 * mass @ squared), float(potential.sum()), float(np.sqrt(squared.max(initial=0.0)))
+
+    def live_count(self) -> Curve:
+        """How many particles were alive at each frame so far."""
+        seconds = FRAME_SECONDS * np.arange(len(self.tally.live))
+        return Curve("time", seconds, {"alive": self.tally.live}, x_label="time (s)", y_label="particles alive")
 
     def _reckon_with(self, fastest: float) -> None:
         """Nobody who now lives is faster: what may pass through a collider in a step is looked at more closely."""

@@ -74,7 +74,6 @@ class Trails:
         self.gpu, self.system, self.params = gpu, system, params
         self.stride: int = max(1, math.ceil(params.trail_seconds / FRAME_SECONDS / (params.trail_points - 2)))
         self.notes = 0
-        self.bytes_per_particle = trail_bytes(params)
         self._paths: Paths | None = None
         self._drawing: TrailDrawing | None = None
 
