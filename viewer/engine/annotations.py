@@ -1,15 +1,16 @@
-"""What a scene says beside its picture: words in it, tables next to it, and what a click on it means."""
+"""What a scene says beside its picture: words in it, tables next to it, what a click means, what a hand can hold."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 Cell: TypeAlias = "float | str"
+SQUARE_ENOUGH = 1e-4     # how far a rotation may be from one: single precision after many products
 
 
 @dataclass(frozen=True)
@@ -61,3 +62,48 @@ class Click:
     direction: NDArray[np.float64]
     aspect: float
     height: int
+
+
+@dataclass(frozen=True)
+class Handle:
+    """Something in the picture that a hand can turn or move, in the window.
+
+    ``matrix`` (4, 4) float64, for column vectors, is where it stands in the world: a rotation and a place.
+    Its rings turn it about its own axes, its arrows move it along them. ``name`` is what the history calls it,
+    and what tells one handle from another.
+    """
+
+    matrix: NDArray[np.float64]
+    name: str = ""
+    turns: bool = True
+    moves: bool = False
+
+
+def checked_handle(handle: Any) -> Handle | None:
+    """What a scene's ``handle`` gave, with a matrix of its own; raises TypeError or ValueError for what is wrong."""
+    if handle is None:
+        return None
+    if not isinstance(handle, Handle):
+        raise TypeError("handle gives neither a Handle nor None")
+    try:
+        matrix = np.array(handle.matrix, np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"handle {handle.name} has a matrix that is not one of numbers") from None
+    wrong = _wrong_with(matrix)
+    if wrong:
+        raise ValueError(f"handle {handle.name} has a matrix {wrong}; it has to be (4, 4), a rotation and a place")
+    return Handle(matrix, str(handle.name), bool(handle.turns), bool(handle.moves))
+
+
+def _wrong_with(matrix: NDArray[np.float64]) -> str:
+    """What keeps ``matrix`` from being a rotation and a place; nothing if it is one."""
+    if matrix.shape != (4, 4):
+        return f"of shape {matrix.shape}"
+    if not np.isfinite(matrix).all():
+        return "that is not finite"
+    if np.abs(matrix[3] - (0.0, 0.0, 0.0, 1.0)).max() > SQUARE_ENOUGH:
+        return "whose last row is not 0, 0, 0, 1"
+    turn = matrix[:3, :3]
+    if np.abs(turn @ turn.T - np.eye(3)).max() > SQUARE_ENOUGH:
+        return "that scales or shears"
+    return "that mirrors" if np.linalg.det(turn) < 0.0 else ""

@@ -49,17 +49,24 @@ class Insets:
             if rows.nbytes:
                 buffer.write(np.ascontiguousarray(rows))
 
-    def draw(self) -> None:
-        """Draw the card and the model: in ``Scene.draw_over``, where nothing comes to lie over them."""
+    def draw(self, *, through: bool = False) -> None:
+        """Draw the card and the model: in ``Scene.draw_over``, where nothing comes to lie over them.
+
+        With ``through`` the model shows through what stands before it; its rods lie under its balls.
+        """
         if self.card:
             self._draw_card(self.card)
         rods, balls, faces = self._counts
+        if through:
+            self.gpu.context.depth_func = "1"
         if faces:
             self._faces.render(vertices=faces)
         if rods:
             self._rods.render(instances=rods)
         if balls:
             self._balls.render(instances=balls)
+        if through:
+            self.gpu.context.depth_func = "<"
 
     def _draw_card(self, card: Card) -> None:
         context = self.gpu.context

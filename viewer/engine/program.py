@@ -197,13 +197,13 @@ class VertexArray:
         self.program, self.content, self.index, self.mode, self.closed = program, content, index, mode, closed
         self._arrays: dict[object, tuple[Variant, moderngl.VertexArray]] = {}
 
-    def render(self, *, vertices: int = -1, instances: int = -1) -> None:
-        """Draw, in colour or into the shadow map as the stage asks for."""
+    def render(self, *, vertices: int = -1, first: int = 0, instances: int = -1) -> None:
+        """Draw, in colour or into the shadow map as the stage asks for; ``first`` leaves out vertices, or indices."""
         purpose = "depth" if self.program.gpu.casting_shadows else "colour"
         context = self.program.gpu.context
         if self.closed:
             context.enable(moderngl.CULL_FACE)
-        self._bound(purpose).render(self.mode, vertices=vertices, instances=instances)
+        self._bound(purpose).render(self.mode, vertices=vertices, first=first, instances=instances)
         if self.closed:
             context.disable(moderngl.CULL_FACE)
 

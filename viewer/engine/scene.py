@@ -21,7 +21,7 @@ import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from viewer.engine.annotations import Click, Label, Table
+from viewer.engine.annotations import Click, Handle, Label, Table
 from viewer.engine.camera import Orbit
 from viewer.engine.clock import FRAME_SECONDS
 from viewer.engine.color_field import Color
@@ -186,6 +186,11 @@ class Scene:
         """Whether it has a ``draw_sprites``, so that its picture needs the layer for them."""
         return cls.draw_sprites is not Scene.draw_sprites
 
+    @classmethod
+    def has_handle(cls) -> bool:
+        """Whether it has a ``handle``, so that there is a reason to ask for it."""
+        return cls.handle is not Scene.handle
+
     @property
     def frame(self) -> int:
         """The frame that is to be drawn or measured. Asking marks the scene as one that time moves."""
@@ -261,6 +266,19 @@ class Scene:
 
     def click(self, click: Click) -> Mapping[str, object]:
         """Which parameters a click on the picture sets, and to what; none by default."""
+        return {}
+
+    def handle(self) -> Handle | None:
+        """What a hand can turn or move in the window now; nothing by default."""
+        return None
+
+    def drag_handle(self, handle: Handle) -> Mapping[str, object]:
+        """Which parameters to set, and to what, so that the handle stands as in ``handle.matrix``.
+
+        Asked again and again while a hand holds it, which may be where the scene cannot follow: give the nearest
+        values that are allowed. A matrix does not tell whole turns: of the angles that fit, the one nearest to the
+        present value is meant.
+        """
         return {}
 
     def setting(self) -> Studio:

@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.engine.annotations import Click
+from viewer.engine.annotations import Click, Handle, checked_handle
 from viewer.engine.camera import OrbitCamera
 from viewer.engine.catalog import SceneEntry, scene_error
 from viewer.engine.clock import FRAME_SECONDS, Clock, checked_frame
@@ -185,6 +185,18 @@ class Stage:
         origin, direction = self.camera.ray(place, width / height, self.middle)
         click = Click(place, origin, direction, width / height, height)
         return self._off_screen("failed in click", lambda: dict(self.scene.click(click)))
+
+    def handle(self) -> Handle | None:
+        """What a hand can turn or move in the current frame, if anything."""
+        if not self.scene_class.has_handle():
+            return None
+        self._prepare()
+        return self._off_screen("failed in handle", lambda: checked_handle(self.scene.handle()))
+
+    def dragged(self, handle: Handle) -> Mapping[str, object]:
+        """The parameters that let the scene's handle stand as in ``handle``, where a hand has dragged it."""
+        self._prepare()
+        return self._off_screen("failed in drag_handle", lambda: dict(self.scene.drag_handle(handle)))
 
     @property
     def middle(self) -> tuple[float, float]:

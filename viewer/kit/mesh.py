@@ -101,6 +101,20 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return vectors / np.where(length > 0.0, length, 1.0)
 
 
+def smooth_normals(vertices: Vertices, triangles: Triangles) -> Vertices:
+    """Normals (n, 3) of length one: the mean of the faces around, by area, also across vertices at the same place.
+
+    Zero for a vertex that no triangle with an area uses.
+    """
+    places, first = np.unique(vertices, axis=0, return_inverse=True)
+    joined = first.reshape(-1)[triangles]
+    a, b, c = (places[joined[:, corner]] for corner in range(3))
+    faces = np.repeat(np.cross(b - a, c - a), 3, axis=0)
+    total = np.stack([np.bincount(joined.ravel(), faces[:, axis], len(places)) for axis in range(3)], axis=1)
+    size = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.asarray(np.divide(total, size, out=np.zeros_like(total), where=size > 0.0)[first.reshape(-1)])
+
+
 def vertex_areas(vertices: Vertices, triangles: Triangles) -> NDArray[np.float64]:
     """The area that each vertex stands for: a third of the triangles around it; (n,)."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))

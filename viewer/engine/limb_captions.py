@@ -1,0 +1,68 @@
+"""Captions under limbs: plates with the cross section before and after, and the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from viewer.engine.annotations import Label
+from viewer.engine.gpu import Gpu
+from viewer.engine.limb_skin import LimbSkin
+from viewer.engine.sketch import Sketch, strokes
+from viewer.kit.cross_section import flattened, limb_section
+from viewer.kit.limb import Limb
+from viewer.kit.limb_caption import Caption, Outline, caption
+from viewer.kit.srgb import color_of
+
+LINEAR, EXTRA, DUAL = ("Linear blending", "#d55e00"), ("{} extra bone{}", "#0072b2"), ("Dual quaternions", "#009e73")
+
+
+class LimbCaptions:
+    """Stands under the limbs that are shown, one caption each."""
+
+    def __init__(self, gpu: Gpu) -> None:
+        self._sketch = Sketch(gpu)
+        self._captions: list[Caption] = []
+
+    def show(self, skins: Sequence[LimbSkin], aspect: float, place: float | None) -> None:
+        """Caption these from now on; ``place`` is where they are cut, 0 to 1, or None not to show that."""
+        self._captions = []
+        for column, skin in enumerate(skins):
+            if skin.shared.limb:
+                title, color = titled(skin)
+                outlines = None if place is None else outlined(skin, skin.shared.limb, place)
+                self._captions.append(caption(column, len(skins), title, color, skin.numbers(), outlines, aspect))
+        drawn = [strokes(segments, width, color_of(color)) for each in self._captions
+                 for segments, width, color in each.drawings]
+        self._sketch.show([each.rectangle for each in self._captions], drawn)
+
+    def draw(self) -> None:
+        """Draw plates and cross sections: in ``Scene.draw_over``."""
+        self._sketch.draw()
+
+    def labels(self) -> Sequence[Label]:
+        """What is written on them."""
+        return [Label(line.text, line.place, line.size, line.color, line.align, line.plate, line.bold)
+                for each in self._captions for line in each.lines]
+
+
+def titled(skin: LimbSkin) -> tuple[str, str]:
+    """What a way of skinning is called, and its colour."""
+    extra = skin.twist_bones
+    bones = EXTRA[0].format(extra, "s" if extra > 1 else "")
+    if skin.method == "dual_quaternion":
+        return (f"{DUAL[0]}, {bones}" if extra else DUAL[0]), DUAL[1]
+    return (bones, EXTRA[1]) if extra else LINEAR
+
+
+def outlined(skin: LimbSkin, limb: Limb, place: float) -> tuple[Outline, Outline] | None:
+    """A limb's cross section as it was bound and as it is, each with the same point of the skin, or None."""
+    section = limb_section(limb, place)
+    if not len(section.ends):
+        return None
+    bound, posed = limb.mesh.positions.astype(np.float64), skin.posed_places().astype(np.float64)
+    before = flattened(limb, section.points(bound), place)
+    after = flattened(limb, section.points(posed), place, skin.upper)
+    mark = int(before[:, 0, 0].argmax())
+    return Outline(before, before[mark, 0]), Outline(after, after[mark, 0])
