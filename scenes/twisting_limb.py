@@ -45,7 +45,7 @@ from viewer.kit.limb_source import model_in
 
 GROUND = -1.06
 TALLEST, WIDEST = 2.16, 2.5             # how large a model stands in the studio
-APART = 0.88                            # from one limb to the next, for each unit of the picture's aspect
+APART = 0.88                            # from one limb to the next in a square picture; in wider ones more
 FARTHEST_APART = 1.6
 COMPARED = ("linear", "linear", "dual_quaternion")
 EXTRA_BONES = 3                         # in the comparison, where none are asked for
@@ -187,7 +187,7 @@ class TwistingLimb(Scene):
 
     def apart(self) -> float:
         """How far one limb stands from the next."""
-        return min(FARTHEST_APART, APART * self.aspect)
+        return min(FARTHEST_APART, APART * max(1.0, self.aspect))
 
     def standing(self) -> tuple[tuple[float, float, float], float]:
         """What of the model stands in the middle of the studio, and how many times larger: on the floor, as at rest."""
@@ -213,7 +213,7 @@ class TwistingLimb(Scene):
         return len(self.shown()) > 1
 
     def middle(self) -> tuple[float, float]:
-        return 0.0, 0.18 if self.limb else 0.0
+        return 0.0, 0.5 * (1.0 + self.captions.top)
 
     def draw(self) -> None:
         for (skin, _), stand in zip(self.shown(), self.stands(), strict=True):

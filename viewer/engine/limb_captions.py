@@ -37,6 +37,11 @@ class LimbCaptions:
                  for segments, width, color in each.drawings]
         self._sketch.show([each.rectangle for each in self._captions], drawn)
 
+    @property
+    def top(self) -> float:
+        """How high in the picture they reach, -1 where there are none."""
+        return max((each.rectangle[3] for each in self._captions), default=-1.0)
+
     def draw(self) -> None:
         """Draw plates and cross sections: in ``Scene.draw_over``."""
         self._sketch.draw()

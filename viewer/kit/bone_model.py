@@ -10,7 +10,7 @@ from viewer.kit.models import Model, rgb
 from viewer.kit.rig import RiggedMesh
 
 BONE, CHOSEN, EXTRA = rgb("#f4f1ea"), rgb("#e69f00"), rgb("#56b4e9")
-RADIUS = 0.016          # of a joint's ball, in the world
+RADIUS = 0.02           # of a joint's ball, in the world
 
 
 def bone_model(mesh: RiggedMesh, places: NDArray[np.float64], chosen: int, limb: Limb | None,

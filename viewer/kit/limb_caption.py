@@ -13,8 +13,11 @@ from viewer.kit.limb_measure import LimbNumbers
 from viewer.kit.quaternion import Numbers
 
 BEFORE = "#9aa0a8"
-BOTTOM, TOP = -0.965, -0.635         # of the plates
-WIDEST = 1.32                        # times as wide as high would a single plate be without its text
+BOTTOM, HEIGHT = -0.965, 0.33       # of the plates, where picture and text stand side by side
+EM = 0.06                           # a standard letter height, in half heights of the picture
+LONGEST = 15.5 * 0.56               # the longest title, in ems
+LARGEST, SMALLEST = 1.08, 0.72      # of the text, in standard letter heights; below that it goes under the picture
+ROW = 1.42                          # from one line to the next, in ems
 PAD = 0.035
 
 
@@ -37,21 +40,29 @@ class Caption:
 
 def caption(column: int, columns: int, title: str, color: str, numbers: LimbNumbers | None,
             outlines: tuple[Outline, Outline] | None, aspect: float) -> Caption:
-    """The caption in a ``column`` of so many, its cross section before and after in grey and in ``color``."""
-    height = TOP - BOTTOM
-    square = height / aspect
-    width = min(2.0 / columns - 0.04, 0.86 * 2.0 / 3.0 if columns > 1 else 1.15 / min(1.4, aspect))
-    middle = -1.0 + (2.0 * column + 1.0) / columns
-    rectangle = (middle - 0.5 * width, BOTTOM, middle + 0.5 * width, TOP)
-    shown = outlines if outlines and width > 2.4 * square else None
-    text_left = rectangle[0] + (square + 0.3 * PAD if shown else PAD / aspect)
-    size = min(0.92, 0.92 * (rectangle[2] - text_left) * aspect / 0.78)
-    lines = [Line(title, (text_left, TOP - 0.26 * height), size, color=INK, bold=True)]
-    lines += [Line(words, (text_left, TOP - part * height), 0.92 * size, color=QUIET)
-              for words, part in zip(_words(numbers), (0.53, 0.77), strict=False)]
-    drawings = _drawn(shown, (rectangle[0] + 0.5 * square, BOTTOM + 0.5 * height), 0.5 * height - 0.6 * PAD, aspect,
-                      color) if shown else ()
-    return Caption(rectangle, tuple(lines), drawings)
+    """The caption in a ``column`` of so many, its cross section before and after in grey and in ``color``.
+
+    The text stands beside the cross section, or where there is no room for it, under it.
+    """
+    width = min(2.0 * aspect / columns - 0.05, 1.15)       # in half heights
+    square = HEIGHT if outlines else 0.0
+    size = min(LARGEST, (width - square - 2.0 * PAD) / (LONGEST * EM))
+    stacked = size < SMALLEST and outlines is not None
+    if stacked:
+        square, size = min(width, 0.5), min(LARGEST, (width - 2.0 * PAD) / (LONGEST * EM))
+    row = ROW * EM * size
+    height = square + 3.0 * row + 0.5 * PAD if stacked else HEIGHT
+    middle, top = -1.0 + (2.0 * column + 1.0) / columns, BOTTOM + height
+    left = middle - 0.5 * width / aspect
+    text_left = left + (PAD if stacked or not square else square + 0.3 * PAD) / aspect
+    first = top - square - 0.4 * row if stacked else top - 0.5 * height + 1.12 * row
+    spacing = row if stacked else 1.12 * row
+    lines = [Line(title, (text_left, first), size, color=INK, bold=True)]
+    lines += [Line(words, (text_left, first - place * spacing), 0.92 * size, color=QUIET)
+              for place, words in enumerate(_words(numbers), 1)]
+    center = (middle if stacked else left + 0.5 * square / aspect, top - 0.5 * square)
+    drawings = _drawn(outlines, center, 0.5 * square - 0.6 * PAD, aspect, color) if outlines else ()
+    return Caption((left, BOTTOM, left + width / aspect, top), tuple(lines), drawings)
 
 
 def _words(numbers: LimbNumbers | None) -> Sequence[str]:
