@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Callable
 
-from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels, particles
+from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels, particles, skinning
 from tests.benchmarks.report import Row, Section, table
 
 SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
@@ -18,6 +18,7 @@ SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
     "formulas": formulas.sections,
     "isosurfaces": isosurfaces.sections,
     "particles": particles.sections,
+    "skinning": skinning.sections,
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from viewer.engine.annotations import Label
 from viewer.engine.gpu import Gpu
 from viewer.engine.limb_skin import LimbSkin
 from viewer.engine.sketch import Sketch, strokes
-from viewer.kit.cross_section import flattened, limb_section
+from viewer.kit.cross_section import CrossSection, flattened, limb_section
 from viewer.kit.limb import Limb
 from viewer.kit.limb_caption import Caption, Outline, caption
+from viewer.kit.quaternion import Numbers
 from viewer.kit.srgb import color_of
 
 LINEAR, EXTRA, DUAL = ("Linear blending", "#d55e00"), ("{} extra bone{}", "#0072b2"), ("Dual quaternions", "#009e73")
@@ -63,11 +65,16 @@ def titled(skin: LimbSkin) -> tuple[str, str]:
 
 def outlined(skin: LimbSkin, limb: Limb, place: float) -> tuple[Outline, Outline] | None:
     """A limb's cross section as it was bound and as it is, each with the same point of the skin, or None."""
-    section = limb_section(limb, place)
+    section, before = _bound_section(limb, place)
     if not len(section.ends):
         return None
-    bound, posed = limb.mesh.positions.astype(np.float64), skin.posed_places().astype(np.float64)
-    before = flattened(limb, section.points(bound), place)
-    after = flattened(limb, section.points(posed), place, skin.upper)
+    after = flattened(limb, section.points(skin.posed_places()), place, skin.upper)
     mark = int(before[:, 0, 0].argmax())
     return Outline(before, before[mark, 0]), Outline(after, after[mark, 0])
+
+
+@lru_cache(maxsize=4)
+def _bound_section(limb: Limb, place: float) -> tuple[CrossSection, Numbers]:
+    """Where a limb is cut, and the section as it was bound, seen along the axis."""
+    section = limb_section(limb, place)
+    return section, flattened(limb, section.points(limb.mesh.positions.astype(np.float64)), place)

@@ -170,7 +170,8 @@ class LimbSkin:
 
     def numbers(self) -> LimbNumbers | None:
         """How thin the limb has become, and what is left of it."""
-        return self.shared.gauge.numbers(self.posed_places().astype(np.float64), self.upper) if self.shared.gauge else None
+        gauge = self.shared.gauge
+        return gauge.numbers(self.posed_places().astype(np.float64), self.upper) if gauge else None
 
     def thinnest(self) -> float:
         """The smallest radius ratio among the probes; quicker than ``numbers``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +22,9 @@ class CrossSection:
     ends: NDArray[np.int64]
     parts: Numbers
 
-    def points(self, vertices: Vertices) -> Numbers:
+    def points(self, vertices: NDArray[np.floating[Any]]) -> Numbers:
         """Where the segments start and end, (s, 2, 3), with the vertices (n, 3) of any pose."""
-        first, second = vertices[self.ends[..., 0]], vertices[self.ends[..., 1]]
+        first, second = (vertices[self.ends[..., end]].astype(np.float64) for end in range(2))
         return np.asarray(first + self.parts[..., None] * (second - first))
 
 

@@ -69,10 +69,7 @@ class LimbGauge:
         """All three, for vertices (n, 3) of the whole mesh as they are now."""
         ratios = self.radius_ratios(posed[self.limb.measured], upper, self.limb.measured)
         size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
-        skin, lid = self._skin
-        (volume_before, area_before), (volume_now, area_now) = (
-            (_enclosed(places, skin, lid), area(places, skin))
-            for places in (self.limb.mesh.positions.astype(np.float64), np.asarray(posed, np.float64)))
+        (volume_before, area_before), (volume_now, area_now) = self._bound_extent, self._extent(posed)
         return LimbNumbers(float(ratios.min()) if len(ratios) else np.nan, _ratio(volume_now / size**3, volume_before),
                            _ratio(area_now / size**2, area_before))
 
@@ -90,8 +87,17 @@ class LimbGauge:
         return rings, np.bincount(ring, ratios) / count, np.bincount(ring, shares) / count
 
     @cached_property
-    def _skin(self) -> tuple[Triangles, NDArray[np.int64]]:
-        """The triangles between the ends of the blending, else all, and the edges (e, 2) where they end."""
+    def _bound_extent(self) -> tuple[float, float]:
+        return self._extent(self.limb.mesh.positions.astype(np.float64))
+
+    def _extent(self, places: Vertices) -> tuple[float, float]:
+        """Volume and area of the skin that is measured, its vertices (n, 3) of the whole mesh at ``places``."""
+        rows, skin, rim = self._skin
+        return _enclosed(places[rows], skin, rim), area(places[rows], skin)
+
+    @cached_property
+    def _skin(self) -> tuple[NDArray[np.int64], Triangles, NDArray[np.int64]]:
+        """The vertices between the ends of the blending, else all, their triangles, and the edges (e, 2) around."""
         limb = self.limb
         triangles = welded(limb.mesh.positions.astype(np.float64), limb.mesh.triangles)
         low, high = limb.zone
@@ -99,10 +105,11 @@ class LimbGauge:
         inside = (limb.held > WHOLE) & (limb.along > low - slack) & (limb.along < high + slack)
         skin = triangles[inside[triangles].all(axis=1)]
         skin = skin if len(skin) else triangles
+        rows, numbered = np.unique(skin, return_inverse=True)
+        skin, count = numbered.reshape(skin.shape).astype(np.int32), len(rows)
         edges = np.concatenate([skin[:, [0, 1]], skin[:, [1, 2]], skin[:, [2, 0]]]).astype(np.int64)
-        count = len(limb.mesh.positions)
         forward, backward = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
-        return skin, edges[~np.isin(forward, backward)]
+        return rows.astype(np.int64), skin, edges[~np.isin(forward, backward)]
 
 
 def _ratio(now: float, before: float) -> float:
