@@ -20,7 +20,7 @@ UNSIGNED: Types = {**SMALL, 5125: np.dtype("<u4")}
 SIGNED: Types = {5120: np.dtype("<i1"), 5122: np.dtype("<i2")}
 NUMBER: Types = {**FLOAT, **UNSIGNED, **SIGNED}
 NUMBERS_PER_BYTE = 2            # of the buffers that may be asked for: each read once, and gathered with others once
-SPARE_NUMBERS = 2**24           # beyond that
+SPARE_NUMBERS = 2**22           # beyond that
 
 
 class Accessors:

@@ -90,12 +90,13 @@ class Container:
         return self._read(place)
 
     def _read(self, place: Path) -> bytes:
-        self.bytes_read += place.stat().st_size
+        size = place.stat().st_size
+        self.bytes_read += size
         if self.bytes_read > MOST_BYTES:
             raise ModelFileError(f"model {self.path} has {self.bytes_read:,} bytes or more; "
                                  f"at most {MOST_BYTES:,} are allowed")
         with place.open("rb") as file:
-            return file.read(MOST_BYTES)
+            return file.read(size)
 
     def _place(self, entry: Entry) -> Path | None:
         """The file beside the model that an entry names; raises ModelFileError if it must not be opened."""

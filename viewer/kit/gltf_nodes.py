@@ -153,7 +153,7 @@ def _placed(entries: list[Entry]) -> tuple[tuple[Vectors, Vectors, Vectors], lis
     if given:
         stacked = np.array(matrices)
         translations[given], (rotations[given], scales[given], sheared) = stacked[:, :3, 3], _turn_and_scale(stacked)
-        notes = [f"{entries[given[which]].place} has a matrix that shears; it is shown without the shear"
+        notes = [f"{entries[given[which]].place} has a matrix that shears; it is shown without the shear."
                  for which in np.nonzero(sheared)[0][:1]]
     return (translations, quaternion.normalised(rotations), scales), notes
 
