@@ -45,6 +45,8 @@ from viewer.kit.limb_source import model_in
 
 GROUND = -1.06
 TALLEST, WIDEST = 2.16, 2.5             # how large a model stands in the studio
+HEADS = 0.95                            # how high in the picture limbs may reach
+RAISED = 0.4                            # of the height that a low model leaves free, how much is below it
 APART = 0.88                            # from one limb to the next in a square picture; in wider ones more
 FARTHEST_APART = 1.6
 COMPARED = ("linear", "linear", "dual_quaternion")
@@ -126,12 +128,12 @@ class TwistingLimb(Scene):
         wanted = self.params.revision, self.aspect, self.seconds(), self.shared.generation
         if wanted != self.followed:
             self.followed = None
-            self.tell_shaders()
             local = self.local()
             for skin, twist_bones in self.shown():
                 skin.pose(local, self.twist(), twist_bones)
             place = self.params.slice if self.params.show_slice else None
             self.captions.show([skin for skin, _ in self.shown()], self.aspect, place)
+            self.tell_shaders()
             self.followed = wanted
 
     def shown(self) -> list[tuple[LimbSkin, int]]:
@@ -194,7 +196,8 @@ class TwistingLimb(Scene):
         low, high = self.shared.extent
         width, height, depth = (float(length) for length in high - low)
         room = 0.95 * self.apart() if len(self.shown()) > 1 else WIDEST
-        scale = min(TALLEST / max(height, 1e-9), room / max(math.hypot(width, depth), 1e-9))
+        tall = min(TALLEST, (HEADS - self.lowest()) * self.half_height()) if self.limb else TALLEST
+        scale = min(tall / max(height, 1e-9), room / max(math.hypot(width, depth), 1e-9))
         across, _, along = (float(place) for place in 0.5 * (low + high))
         return (across, float(low[1]) - GROUND / scale, along), scale
 
@@ -213,7 +216,20 @@ class TwistingLimb(Scene):
         return len(self.shown()) > 1
 
     def middle(self) -> tuple[float, float]:
-        return 0.0, 0.5 * (1.0 + self.captions.top)
+        if not self.limb:
+            return 0.0, 0.0
+        low, high = self.shared.extent
+        spare = HEADS - self.lowest() - self.standing()[1] * float(high[1] - low[1]) / self.half_height()
+        return 0.0, self.lowest() + RAISED * spare - GROUND / self.half_height()
+
+    def half_height(self) -> float:
+        """How much of the world the picture shows from its middle up, where the camera starts."""
+        angle = math.radians(0.5 * self.camera.field_of_view)
+        return self.camera.distance * math.tan(angle) / min(1.0, self.aspect)
+
+    def lowest(self) -> float:
+        """How low in the picture limbs may stand: above their captions."""
+        return self.captions.top + 0.07
 
     def draw(self) -> None:
         for (skin, _), stand in zip(self.shown(), self.stands(), strict=True):

@@ -123,7 +123,8 @@ def rest(hand: Hand) -> None:
     hand.frames(30)
 
 
-def test_both_stand_across_the_whole_panel_under_their_labels(hand: Hand) -> None:
+def test_both_stand_across_the_whole_panel_under_their_labels(make_ember: Callable[..., Hand]) -> None:
+    hand = make_ember(size=(1024, 960))         # all rows are in sight
     left, _, right, _ = hand.places["glow"]
     assert hand.places["last"][0] > left + 0.3 * (right - left), "a slider stands beside its label"
     assert hand.places["last"][2] == pytest.approx(right, abs=1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,6 +154,7 @@ def with_falloff(limb: Limb, falloff: str) -> Limb:
     return Limb(replace(limb.mesh, weights=weights.astype(np.float32)), limb.upper, limb.lower, limb.start, limb.end)
 
 
+@lru_cache(maxsize=4)
 def parent_bones(mesh: RiggedMesh) -> NDArray[np.int64]:
     """For each entry of the palette that of the nearest joint above its own, -1 where there is none: (b,)."""
     entry_of = {int(joint): entry for entry, joint in reversed(list(enumerate(mesh.bones)))}
@@ -167,6 +168,7 @@ def parent_bones(mesh: RiggedMesh) -> NDArray[np.int64]:
     return found
 
 
+@lru_cache(maxsize=4)
 def most_blended_bone(mesh: RiggedMesh) -> int:
     """The palette entry that shares the most of the skin with its parent: where a twist has most to collapse.
 

@@ -49,7 +49,7 @@ def caption(column: int, columns: int, title: str, color: str, numbers: LimbNumb
     size = min(LARGEST, (width - square - 2.0 * PAD) / (LONGEST * EM))
     stacked = size < SMALLEST and outlines is not None
     if stacked:
-        square, size = min(width, 0.5), min(LARGEST, (width - 2.0 * PAD) / (LONGEST * EM))
+        square, size = min(width, 0.38), min(LARGEST, (width - 2.0 * PAD) / (LONGEST * EM))
     row = ROW * EM * size
     height = square + 3.0 * row + 0.5 * PAD if stacked else HEIGHT
     middle, top = -1.0 + (2.0 * column + 1.0) / columns, BOTTOM + height

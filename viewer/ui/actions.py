@@ -74,6 +74,7 @@ ACTIONS: tuple[Action, ...] = (
 
 MOUSE = (
     ("Click", "Choose what is under the mouse, where a scene lets you"),
+    ("Drag a ring", "Turn what it stands around, where a scene has one"),
     ("Left drag", "Turn the camera"),
     ("Right, Shift+drag", "Move the camera"),
     ("Wheel, two fingers", "Come closer, go back"),

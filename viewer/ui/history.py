@@ -46,13 +46,14 @@ class History:
         last = self._changes[-1] if self._changes else None
         if last and self._open and last.subject == subject:
             last.after = after
-            if last.after == last.before:
-                self._changes.pop()
         else:
-            self._changes.append(Change(subject, before, after))
+            last = Change(subject, before, after)
+            self._changes.append(last)
+        self._open = last.after != last.before
+        if not self._open:
+            self._changes.pop()     # back where it began; what the hand does next melts into nothing earlier
         del self._changes[:-LONGEST]
         self._in_force = len(self._changes)
-        self._open = True
 
     def settle(self) -> None:
         """The hand has left the widget: the next change is an entry of its own."""

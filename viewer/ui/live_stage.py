@@ -7,9 +7,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import moderngl
 
+from viewer.engine.annotations import Handle
 from viewer.engine.catalog import SceneEntry
 from viewer.engine.file_stamp import file_stamp
 from viewer.engine.scene import ColorScale
@@ -17,6 +19,7 @@ from viewer.engine.shaders import ShaderError
 from viewer.engine.stage import Stage
 from viewer.ui.guard import one_line
 
+Answer = TypeVar("Answer")
 WATCH_SECONDS = 0.2
 PLACE_IN_SCENE = re.compile(r"(?P<file>[\w.-]+\.py):(?P<line>\d+)")
 
@@ -63,6 +66,8 @@ class LiveStage:
         self._scene_stamp = file_stamp(stage.entry.file)
         self._since_watch = 0.0
         self._drawn: object = None
+        self._handle: Handle | None = None
+        self._handle_shown: object = None
         self._query = query
         self._query_pending = False
 
@@ -132,25 +137,44 @@ class LiveStage:
 
     def color_scale(self) -> ColorScale | None:
         """What the picture's colours stand for, if they stand for a number."""
+        return self._answer("colour scale", self.stage.color_scale)
+
+    def handle(self) -> Handle | None:
+        """What a hand can turn or move, if anything; the scene is asked only where something has changed."""
+        showing = self.stage.showing
+        if self._handle_shown != showing:
+            self._handle_shown = showing
+            self._handle = self._answer("handle", self.stage.handle)
+            if self._failed_doing == "handle" and self._failure:
+                self._handle_shown = None       # it may go well the next time
+        return self._handle
+
+    def middle(self) -> tuple[float, float] | None:
+        """Where in the picture the camera's target stands; None while the scene fails, which ``render`` tells."""
         try:
-            scale = self.stage.color_scale()
-        except Exception as error:
-            self._fail("colour scale", error)
+            return self.stage.middle
+        except Exception:
             return None
-        if self._failed_doing == "colour scale":
-            self._failure = None
-        return scale
 
     def card_below(self) -> bool:
-        """Whether the scene has moved up to make room below; not while it fails, which ``render`` tells."""
-        try:
-            return self.stage.middle[1] > 0.0
-        except Exception:
-            return False
+        """Whether the scene has moved up to make room below."""
+        middle = self.middle()
+        return bool(middle and middle[1] > 0.0)
 
     def release(self) -> None:
         """Free the stage."""
         self.stage.release()
+
+    def _answer(self, doing: str, ask: Callable[[], Answer]) -> Answer | None:
+        """What the stage answers; if it raises, None, and why until the same goes well."""
+        try:
+            answer = ask()
+        except Exception as error:
+            self._fail(doing, error)
+            return None
+        if self._failed_doing == doing:
+            self._failure = None
+        return answer
 
     def _fail(self, doing: str, error: Exception) -> None:
         self._failure, self._failed_doing, self._error = problem_of(error, self.stage.entry), doing, error

@@ -61,7 +61,7 @@ class Panels:
         """Draw them all, for the bench's present layout."""
         bench, layout = self.bench, self.bench.layout
         self.measurements_visible = False
-        self.hand_on_widget = imgui.is_any_item_active()
+        self.hand_on_widget = imgui.is_any_item_active() or bench.picture_view.hand_on_handle
         if not self.hand_on_widget:
             bench.history.settle()
         if bench.view.panels:

@@ -99,6 +99,7 @@ class Workbench(Editor):
         self.history = History()
         self.notice = None
         self.panels.stage_changed()
+        self.picture_view.stage_changed()
         self.pace.hurry()
         if former and not former_borrowed:
             former.release()
