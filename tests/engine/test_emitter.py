@@ -16,7 +16,7 @@ from viewer.engine.fields import ParameterError
 from viewer.engine.gpu import Gpu
 from viewer.engine.particles.emitter import Emitter, EmitterParameters, turning
 from viewer.engine.shaders import ShaderFolders
-from viewer.kit.fish import fish_mesh
+from viewer.kit.fish import SPECIES, fish_mesh
 from viewer.kit.mesh_file import MeshFileError
 
 Floats = NDArray[np.float64]
@@ -310,6 +310,16 @@ def test_a_meshs_volume_is_filled_and_never_left(bench: Callable[..., Bench], tm
     assert np.allclose(np.abs(normal).max(axis=1), 1.0)
     cells = np.floor((place / half + 1) * 3).astype(int).clip(0, 5) @ [36, 6, 1]
     as_expected(np.bincount(cells, minlength=216), np.ones(216))
+
+
+@pytest.mark.parametrize("species", SPECIES)
+def test_particles_come_from_the_fish_that_is_chosen(bench: Callable[..., Bench], species: str) -> None:
+    """As long and as slim as it is; another choice takes effect at once."""
+    fish = bench(emitter="fish", emitter_species="koi")
+    fish.draw()
+    place, _, _ = fish.draw(emitter_species=species)
+    extent = np.ptp(fish_mesh(species)[0], axis=0)
+    assert np.ptp(place, axis=0) == pytest.approx(extent, rel=0.15, abs=0.02)
 
 
 def test_a_fish_is_one_metre_long(bench: Callable[..., Bench]) -> None:

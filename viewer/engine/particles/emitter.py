@@ -17,7 +17,7 @@ from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
 from viewer.engine.program import Program
 from viewer.kit import mesh, shapes
-from viewer.kit.fish import fish_mesh
+from viewer.kit.fish import SPECIES, fish_mesh
 from viewer.kit.interior_points import volume_table
 from viewer.kit.mesh_file import SUFFIXES, FileMesh, MeshFileError, read_mesh
 from viewer.kit.surface_sampling import SamplingTable, edge_table, faces_inward, is_closed, surface_table, welded
@@ -48,6 +48,8 @@ class EmitterParameters(Parameters):
     """What an artist sets of the shape that particles come from."""
 
     emitter: str = choice("point", SHAPES, "The shape that particles come from", group=GROUP)
+    emitter_species: str = choice("koi", {name: f"{species.title}-like" for name, species in SPECIES.items()},
+                                  "Which fish", group=GROUP, when="emitter=fish")
     emit_from: str = choice("surface", SOURCES, "Which part of the shape they come from", group=GROUP,
                             when="emitter!=point")
     emitter_size: float = slider(
@@ -82,7 +84,7 @@ class Emitter:
     def __init__(self, gpu: Gpu, params: EmitterParameters) -> None:
         self.gpu, self.params = gpu, params
         self._followed: tuple[int, Stamp] | None = None
-        self._made: tuple[str, str, Stamp] | None = None
+        self._made: tuple[str, str, str, Stamp] | None = None
         self._read: tuple[Stamp, FileMesh] | None = None
         self._entries = 0
         self._textures: list[moderngl.Texture] = []
@@ -98,7 +100,7 @@ class Emitter:
         if self._followed == (self.params.revision, stamp):
             return
         shape, source = self.params.emitter, self.params.emit_from
-        wanted = (shape, source, stamp)
+        wanted = (shape, self.params.emitter_species, source, stamp)
         if shape in ("mesh", "fish") and wanted != self._made:
             self._send(_table_of(self._mesh(), source, self._name))
             self._made = wanted
@@ -149,7 +151,7 @@ class Emitter:
     def _mesh(self) -> FileMesh:
         """The mesh that particles come from; a file is read once, and again where it has changed."""
         if self.params.emitter == "fish":
-            return _fish()
+            return _fish(self.params.emitter_species)
         path, stamp = self.params.emitter_file, self.stamp
         if path is None:
             raise ParameterError(f"emitter = mesh needs a file: set emitter_file to one that ends in "
@@ -174,7 +176,7 @@ class Emitter:
     def _local_surface(self) -> shapes.ShadedMesh:
         """The shape around its own origin, made anew only when it is another."""
         params = self.params
-        key = (params.emitter, params.emitter_size, params.emitter_thickness, self.stamp)
+        key = (params.emitter, params.emitter_species, params.emitter_size, params.emitter_thickness, self.stamp)
         if self._shaded is None or self._shaded[0] != key:
             self._shaded = key, self._shade()
         return self._shaded[1]
@@ -203,10 +205,10 @@ def turning(tilt: float, heading: float) -> NDArray[np.float64]:
     return np.asarray(around @ leaning)
 
 
-@lru_cache(maxsize=1)
-def _fish() -> FileMesh:
-    """The fish, with normals that are smooth except at the edges of its fins."""
-    vertices, normals, triangles = shapes.creased(*fish_mesh(), degrees=50.0)
+@lru_cache(maxsize=len(SPECIES))
+def _fish(species: str) -> FileMesh:
+    """A fish, with normals that are smooth except at the edges of its fins."""
+    vertices, normals, triangles = shapes.creased(*fish_mesh(species), degrees=50.0)
     return FileMesh(vertices, triangles, normals)
 
 
