@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from viewer.engine.fish.fins import FinParameters
     from viewer.engine.fish.flock import Flock
     from viewer.engine.fish.look import FishLookParameters
-    from viewer.engine.fish.model import FishModel, detail_worth
+    from viewer.engine.fish.model import FishModel, detail_of
     from viewer.engine.fish.school import SchoolParameters
     from viewer.engine.fish.spine import Spine
     from viewer.engine.fish.swimming import Swimming, SwimParameters
@@ -117,7 +117,7 @@ __all__ = [
     "choice",
     "color",
     "curve",
-    "detail_worth",
+    "detail_of",
     "file",
     "formula",
     "formula_include",

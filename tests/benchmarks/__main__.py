@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Callable
 
-from tests.benchmarks import big_mesh, cold_start, formulas, isosurfaces, panels, particles, skinning
+from tests.benchmarks import big_mesh, cold_start, fish, formulas, isosurfaces, panels, particles, skinning
 from tests.benchmarks.report import Row, Section, table
 
 SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
@@ -19,6 +19,7 @@ SUBJECTS: dict[str, Callable[[int], list[Section]]] = {
     "isosurfaces": isosurfaces.sections,
     "particles": particles.sections,
     "skinning": skinning.sections,
+    "fish": fish.sections,
 }
 
 

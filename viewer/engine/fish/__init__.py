@@ -1,0 +1,1 @@
+"""Fish: how they swim, paddle and flock."""
