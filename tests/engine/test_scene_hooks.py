@@ -462,3 +462,11 @@ def test_pattern_and_example_are_described() -> None:
     about = Offered.declared["cell"].describe()
     assert (about["pattern"], about["example"]) == (r"\d{1,6}( *, *\d{1,6}){2}", "3,0,7")
     assert Offered.declared["free"].describe()["pattern"] == ""
+
+
+def test_a_scene_that_is_not_furnished_draws_its_own_set(make_stage: MakeStage) -> None:
+    """No floor and no backdrop where it draws nothing; a furnished one has both."""
+    empty = packs.TILE.replace("        self.array.render(vertices=3)\n", "        pass\n")
+    bare = empty.replace("Studio(ground=None)", "Studio(furnished=False)")
+    assert not make_stage(bare, name="bare").pixels()[..., :3].any()
+    assert make_stage(empty.replace("Studio(ground=None)", "Studio()")).pixels()[..., :3].all()

@@ -88,12 +88,14 @@ class Studio:
 
     ``center`` and ``radius`` bound what the scene draws (the shadow covers that sphere); ``ground`` is
     the floor's height, None for no floor; ``backdrop`` the sRGB colours low and high behind it all.
+    A scene that draws a floor and a backdrop of its own is not ``furnished``.
     """
 
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
     radius: float = 1.5
     ground: float | None = -1.0
     backdrop: tuple[str, str] = ("#c9ced6", "#7f8b9c")
+    furnished: bool = True
 
     def __post_init__(self) -> None:
         if np.shape(self.center) != (3,) or not np.isfinite(np.asarray(self.center, np.float64)).all():

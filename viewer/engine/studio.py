@@ -31,7 +31,9 @@ class StudioSet:
         self.light_values = self._light_values()
 
     def draw(self) -> None:
-        """Fill what the scene left empty: the floor, then the backdrop behind everything."""
+        """Fill what the scene left empty: the floor, then the backdrop behind everything; or leave it to the scene."""
+        if not self.plan.furnished:
+            return
         context = self.gpu.context
         context.depth_func = "<="
         if self.plan.ground is not None:
