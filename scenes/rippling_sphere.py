@@ -26,6 +26,7 @@ from viewer import (
     toggle,
 )
 from viewer.kit import mesh
+from viewer.kit.needle import needle_corners
 from viewer.kit.surface_normal import angles_to_nearest, normal_candidates
 
 EPSILONS = np.logspace(-7, 0, 29)
@@ -163,10 +164,3 @@ def tessellated(kind: str, level: int) -> mesh.Mesh:
 def areas(kind: str, level: int) -> NDArray[np.float64]:
     """The share of the undisplaced sphere that each vertex stands for."""
     return mesh.vertex_areas(*tessellated(kind, level))
-
-
-def needle_corners() -> NDArray[np.float32]:
-    """The four sides of a thin pyramid from a square at 0 to a tip at 1: (12, 3)."""
-    square = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0)]
-    sides = [(square[i], square[(i + 1) % 4], (0.0, 0.0, 1.0)) for i in range(4)]
-    return np.array(sides, "f4").reshape(-1, 3)

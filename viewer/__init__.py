@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from viewer.engine.particles.strands import Strands
     from viewer.engine.particles.system import ParticleParameters, ParticleSystem
     from viewer.engine.particles.trails import TrailParameters, Trails, trail_bytes
-    from viewer.engine.program import Program
+    from viewer.engine.program import Program, VertexArray
     from viewer.engine.scene import ColorScale, Curve, Geometry, Measurements, Scene, Studio
     from viewer.engine.sketch import Sketch, strokes
     from viewer.engine.skin import BonePalette, skin_attributes
@@ -112,6 +112,7 @@ __all__ = [
     "TrailParameters",
     "Trails",
     "Underwater",
+    "VertexArray",
     "Wanted",
     "WaterParameters",
     "choice",

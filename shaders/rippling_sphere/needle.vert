@@ -1,6 +1,7 @@
 #version 330 core
 // A thin pyramid standing on the rippled sphere along a normal: one instance for each needle.
 #include "rippling_sphere/ripple.glsl"
+#include "lib/needle.glsl"
 
 uniform int u_way;
 uniform float u_epsilon;
@@ -14,10 +15,7 @@ out vec3 v_normal;
 
 void main() {
     vec3 along = ripple_normal(in_root, u_way, u_epsilon);
-    vec3 first, second;
-    tangents(along, first, second);
-    vec3 across = in_corner.x * first + in_corner.y * second;
-    v_normal = across;
-    v_position = rippled(in_root) + u_needle_length * (0.035 * across + in_corner.z * along);
+    v_normal = needle_side(in_corner, along);
+    v_position = needle_corner(in_corner, rippled(in_root), along, u_needle_length);
     gl_Position = u_frame.view_projection * vec4(v_position, 1.0);
 }

@@ -2,6 +2,7 @@
 // vec3 rippled(vec3 p): the place of the point p of the unit sphere.
 // vec3 ripple_normal(vec3 p, int way, float epsilon): its normal, of length one.
 #include "lib/frame.glsl"
+#include "lib/tangents.glsl"
 #include "generated/displacement.glsl"
 
 uniform int u_direction;          // 0 along x, 1 along the sphere's normal
@@ -42,13 +43,6 @@ vec3 exact_normal(vec3 p) {
     float stretch = 1.0 + ripple_height(p);
     vec3 along_surface = slope - dot(slope, p) * p;
     return stretch * (stretch * p - along_surface);
-}
-
-// Two directions along the sphere at p, at right angles, such that cross(first, second) is p.
-void tangents(vec3 p, out vec3 first, out vec3 second) {
-    vec3 helper = abs(p.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    first = normalize(cross(helper, p));
-    second = cross(p, first);
 }
 
 vec3 forward_normal(vec3 p, float epsilon) {

@@ -15,6 +15,7 @@ from viewer.engine.program import Program, VertexArray
 from viewer.engine.scene import Geometry
 from viewer.engine.skin import BonePalette, skin_attributes
 from viewer.kit.fish import FishMesh, fish, fish_rig
+from viewer.kit.fish_species import Part
 from viewer.kit.mesh import vertex_areas
 
 BONES_UNIT = 10
@@ -58,7 +59,14 @@ class FishModel:
         for name, value in look.skin_uniforms(self.params, self.species).items():
             program[name] = value
         self._palette.bind(program, BONES_UNIT)
-        self._array(detail, fine).render(instances=instances)
+        # A far fish's shadow is that of its body, the first of its pieces.
+        body_alone = self.gpu.casting_shadows and not fine
+        vertices = 3 * self._body_triangles(detail) if body_alone else -1
+        self._array(detail, fine).render(vertices=vertices, instances=instances)
+
+    def _body_triangles(self, detail: int) -> int:
+        mesh = fish(self.species, detail)
+        return int((mesh.parts[mesh.triangles[:, 0]] == Part.BODY).sum())
 
     def draw_needles(self, needles: VertexArray, count: int) -> None:
         """Draw what ``needles`` made, on the first fish."""
