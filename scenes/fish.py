@@ -70,7 +70,7 @@ class Fish(Scene):
         pass
 
     camera = Orbit(yaw=27, pitch=10, distance=1.65, target=(0.05, -0.03, 0.0))
-    studio = Studio(radius=SIGHT, ground=FLOOR, backdrop=WATERS["lagoon"])
+    studio = Studio(radius=SIGHT, ground=FLOOR, backdrop=WATERS["lagoon"], furnished=False)
     poster = 90
 
     def __init__(self, gpu: Gpu, params: Params) -> None:
@@ -115,7 +115,8 @@ class Fish(Scene):
         p = self.params
         across, high, _ = (0.0, 0.0, 0.0) if self.alone else self.flock.half_axes
         floor = min(FLOOR, -1.1 * high)
-        return Studio(radius=max(SIGHT, across), ground=floor if p.seabed else None, backdrop=WATERS[p.water])
+        return Studio(radius=max(SIGHT, across), ground=floor if p.seabed else None, backdrop=WATERS[p.water],
+                      furnished=False)
 
     def draw(self) -> None:
         self.water.draw()

@@ -2,7 +2,10 @@
 // Linear blend skinning, or its cure: each vertex follows its bones. Then the model is put in its place in the studio.
 #include "lib/frame.glsl"
 #include "lib/skin_vertex.glsl"
+#include "generated/posed_before.glsl"        // POSED_BEFORE: whether a pass has done it already, for a large mesh
 
+uniform sampler2D u_posed_places;
+uniform sampler2D u_posed_normals;
 uniform vec3 u_model_middle;      // what stands at the origin of the world
 uniform float u_model_scale;
 uniform vec3 u_aside;             // how far it is moved from there
@@ -27,7 +30,13 @@ vec3 turned(vec3 v) {
 void main() {
     v_posed = in_position;
     v_posed_normal = in_normal;
-    skin_vertex(v_posed, v_posed_normal);
+    if (POSED_BEFORE) {
+        ivec2 texel = ivec2(gl_VertexID % POSED_WIDTH, gl_VertexID / POSED_WIDTH);
+        v_posed = texelFetch(u_posed_places, texel, 0).xyz;
+        v_posed_normal = texelFetch(u_posed_normals, texel, 0).xyz;
+    } else {
+        skin_vertex(v_posed, v_posed_normal);
+    }
     v_position = turned(u_model_scale * (v_posed - u_model_middle)) + u_aside;
     v_normal = turned(v_posed_normal);
     v_texcoord = in_texcoord;

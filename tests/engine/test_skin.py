@@ -13,6 +13,7 @@ from viewer.engine.catalog import builtin_pack
 from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.shaders import ShaderFolders
 from viewer.engine.skin import BonePalette, skin_attributes
+from viewer.engine.skin_pass import SkinPass
 from viewer.kit import skinning
 from viewer.kit.rig import composed
 
@@ -84,3 +85,21 @@ def test_more_bones_than_a_texture_holds_are_refused(gpu: Gpu) -> None:
     """With the number and what is allowed."""
     with pytest.raises(GpuError, match=r"^0 bones are outside 1 to \d+"):
         BonePalette(gpu, 0)
+
+
+@pytest.mark.parametrize("method", ["linear", "dual_quaternion"])
+@pytest.mark.parametrize(("influences", "scaled"), [(4, False), (8, True)])
+def test_a_pass_skins_as_numpy_does(gpu: Gpu, method: str, influences: int, scaled: bool) -> None:
+    """One fragment a vertex, also after the vertices were given to other bones."""
+    positions, normals, joints, weights, matrices = rig(20, influences, scaled=scaled)
+    palette = BonePalette(gpu, 20, method, influences=influences, stretches=scaled)
+    palette.send(matrices)
+    skin = SkinPass(gpu, positions, normals, joints, weights, palette)
+    blend = {"linear": "linear_blend", "dual_quaternion": "dual_quaternion"}[method]
+    for ways in (joints, (joints + 7) % 20):
+        skin.follow(ways, weights)
+        skin.run(0)
+        places, turned = skin.read()
+        assert np.abs(places - getattr(skinning, blend)(positions, ways, weights, matrices)).max() < 1e-5
+        expected = getattr(skinning, f"{blend}_normals")(normals, ways, weights, matrices)
+        assert np.quantile(np.abs(turned - expected).max(axis=1), 0.99) < 1e-4

@@ -278,3 +278,20 @@ def test_it_sways_by_the_clock(stage: Stage) -> None:
     assert stage.measure()["min_radius_ratio"] == pytest.approx(1.0, abs=1e-6)
     stage.seek(90)
     assert stage.measure()["min_radius_ratio"] == at_quarter
+
+
+def test_a_large_model_looks_and_measures_as_a_small_one(make_stage: MakeStage,
+                                                         monkeypatch: pytest.MonkeyPatch) -> None:
+    """From some size on vertices are posed in a pass of their own, not whenever they are drawn."""
+    def seen() -> tuple[np.ndarray, dict[str, np.ndarray], float]:
+        stage = make_stage("", name="twisting_limb", size=(320, 180), params={"twist": 120, "bend": 30})
+        stage.set(twist_bones=2)
+        return stage.pixels(), stage.geometry(), float(stage.measure()["volume_ratio"])
+
+    small = seen()
+    monkeypatch.setattr("viewer.engine.limb_skin.LARGE", 1000)
+    large = seen()
+    assert (np.abs(large[0].astype(int) - small[0]).max(axis=2) > 1).mean() < 0.001
+    for name in ("vertices", "normals"):
+        assert np.abs(large[1][name] - small[1][name]).max() < 1e-5
+    assert large[2] == pytest.approx(small[2], abs=1e-5)

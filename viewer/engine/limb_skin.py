@@ -11,19 +11,22 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from viewer.engine import skin_pass
 from viewer.engine.gpu import Gpu
 from viewer.engine.program import Program, VertexArray
 from viewer.engine.skin import BonePalette, skin_attributes
+from viewer.engine.skin_pass import SkinPass
 from viewer.kit.limb import Limb, twisted_palette, with_twist_bones
 from viewer.kit.limb_measure import LimbGauge, LimbNumbers
 from viewer.kit.quaternion import Numbers
-from viewer.kit.skinning import linear_blend
+from viewer.kit.skinning import RIGID_WITHIN, linear_blend, rigid_parts
 
 if TYPE_CHECKING:
     from viewer.kit.gltf import Part, RiggedModel
 
 MOST_TWIST_BONES = 8
 MOST_PROBES = 1500
+LARGE = 100_000         # vertices, from which on they are posed once, not whenever they are drawn
 BONES_UNIT, TEXTURE_UNIT = 0, 1
 Rows = NDArray[np.float32]
 
@@ -53,7 +56,7 @@ class LimbModel:
         self.probed = _spread(limb, MOST_PROBES) if limb else np.zeros(0, np.intp)
         self.index = gpu.buffer(mesh.triangles, label="triangles")
         self._textures = [self._texture(part) for part in model.parts]
-        self._programs: dict[str, Program] = {}
+        self._programs: dict[tuple[str, bool], Program] = {}
 
     @property
     def generation(self) -> int:
@@ -66,6 +69,14 @@ class LimbModel:
         mesh = self.model.mesh
         places = linear_blend(mesh.positions, mesh.joints, mesh.weights, mesh.palette())
         return places.min(axis=0), places.max(axis=0)
+
+    @cached_property
+    def is_rigid(self) -> bool:
+        """Whether no bone ever scales: as bound, at rest, or in an animation."""
+        mesh, clips = self.model.mesh, self.model.clips
+        even = np.ptp(mesh.skeleton.scales, axis=1).max(initial=0.0) <= RIGID_WITHIN
+        moved = any(track.path == "scale" for clip in clips for track in clip.tracks)
+        return bool(even and not moved and rigid_parts(mesh.palette())[2] is None)
 
     def radius_ratios(self, skin: LimbSkin) -> Numbers:
         """By how much the radius of each measured vertex of a skin has changed."""
@@ -80,13 +91,17 @@ class LimbModel:
                 (self.gpu.buffer(mesh.normals[rows], label="bound normals"), "3f", "in_normal"),
                 (self.gpu.buffer(mesh.texcoords[rows], label="texture places"), "2f", "in_texcoord")]
 
-    def program(self, palette: BonePalette) -> Program:
-        """The program that blends as a palette asks for."""
-        if palette.method not in self._programs:
-            made = self.gpu.program("limb/limb.vert", "limb/limb.frag", generated=palette.generated)
+    def program(self, palette: BonePalette, *, posed_before: bool = False) -> Program:
+        """The program that blends as a palette asks for, or draws what a pass has ``posed_before``."""
+        key = palette.method, posed_before
+        if key not in self._programs:
+            said = (f"const bool POSED_BEFORE = {str(posed_before).lower()};\n"
+                    f"const int POSED_WIDTH = {skin_pass.WIDTH};\n")
+            made = self.gpu.program("limb/limb.vert", "limb/limb.frag", generated={
+                **palette.generated, "generated/posed_before.glsl": lambda: said})
             made["u_texture"] = TEXTURE_UNIT
-            self._programs[palette.method] = made
-        return self._programs[palette.method]
+            self._programs[key] = made
+        return self._programs[key]
 
     def tell(self, name: str, value: Any) -> None:
         """Set a uniform for every way of skinning."""
@@ -122,15 +137,17 @@ class LimbSkin:
         self.shared, self.method, self.twist_bones = shared, method, 0
         mesh, gpu = shared.model.mesh, shared.gpu
         self.palette = BonePalette(gpu, len(mesh.bones) + MOST_TWIST_BONES, method, influences=mesh.joints.shape[1],
-                                   stretches=shared.model.name != "arm")
+                                   stretches=not shared.is_rigid)
         self.matrices: Numbers = np.zeros((0, 4, 4))
         self.joints, self.weights = mesh.joints, mesh.weights
-        self._program = shared.program(self.palette)
+        self._pass = SkinPass(gpu, mesh.positions, mesh.normals, mesh.joints, mesh.weights, self.palette) if len(
+            mesh.positions) >= LARGE else None
         self._attributes = {name: self._bound(rows) for name, rows in (("all", shared.everywhere),
                                                                       ("probes", shared.probed)) if len(rows)}
-        self._arrays = {name: gpu.vertex_array(self._program, [*shared.content(rows), *self._attributes[name]],
-                                               shared.index if name == "all" else None)
-                        for name, rows in (("all", shared.everywhere), ("probes", shared.probed)) if len(rows)}
+        self._arrays = {name: gpu.vertex_array(
+            shared.program(self.palette, posed_before=bool(self._pass) and name == "all"),
+            [*shared.content(rows), *self._attributes[name]], shared.index if name == "all" else None)
+            for name, rows in (("all", shared.everywhere), ("probes", shared.probed)) if len(rows)}
         self._posed: dict[str, Rows] | None = None
 
     @property
@@ -147,13 +164,18 @@ class LimbSkin:
         self.matrices = twisted_palette(limb, local, degrees, twist_bones) if limb else mesh.palette(local)
         self.palette.send(self.matrices)
         self._posed = None
+        if self._pass:
+            self._pass.run(BONES_UNIT)
 
     def draw(self, stand: Stand) -> None:
         """Draw it where it stands."""
-        self.palette.bind(self._program, BONES_UNIT)
-        self._program["u_aside"] = stand.aside
-        self._program["u_turned"] = math.cos(stand.turned), math.sin(stand.turned)
-        self.shared.draw_parts(self._arrays["all"])
+        array = self._arrays["all"]
+        self.palette.bind(array.program, BONES_UNIT)
+        if self._pass:
+            self._pass.bind(array.program)
+        array.program["u_aside"] = stand.aside
+        array.program["u_turned"] = math.cos(stand.turned), math.sin(stand.turned)
+        self.shared.draw_parts(array)
 
     def posed_places(self) -> Rows:
         """Where the vertex shader puts the vertices, (n, 3), in the model's own space."""
@@ -182,12 +204,14 @@ class LimbSkin:
         return float(gauge.radius_ratios(places.astype(np.float64), self.upper, probed).min())
 
     def _computed(self) -> dict[str, Rows]:
+        if self._posed is None and self._pass:
+            self._posed = dict(zip(("v_posed", "v_posed_normal"), self._pass.read(), strict=True))
         if self._posed is None:
             self._posed = self._captured("all", {"v_posed": 3, "v_posed_normal": 3}, len(self.shared.everywhere))
         return self._posed
 
     def _captured(self, which: str, varyings: dict[str, int], count: int) -> dict[str, Rows]:
-        self.palette.bind(self._program, BONES_UNIT)
+        self.palette.bind(self._arrays[which].program, BONES_UNIT)
         return self._arrays[which].capture(varyings, count)
 
     def _bound(self, rows: NDArray[np.intp]) -> list[tuple[Any, ...]]:
@@ -196,6 +220,8 @@ class LimbSkin:
     def _follow(self, joints: NDArray[np.int32], weights: NDArray[np.float32]) -> None:
         """Let the vertices follow other bones."""
         self.joints, self.weights = joints, weights
+        if self._pass:
+            self._pass.follow(joints, weights)
         for name, rows in (("all", self.shared.everywhere), ("probes", self.shared.probed)):
             if name in self._attributes:
                 (ways, *_), (shares, *_) = self._attributes[name]

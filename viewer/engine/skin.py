@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.program import Program
-from viewer.kit.quaternion import Numbers
+from viewer.kit.quaternion import Numbers, nearest_rotation
 from viewer.kit.skinning import rigid_parts
 
 METHODS = {"linear": "LINEAR_BLEND", "dual_quaternion": "DUAL_QUATERNION"}
@@ -22,8 +22,8 @@ class BonePalette:
 
     A program that includes it is made with ``generated=palette.generated`` and given to ``bind`` before it runs.
     ``method`` is ``linear`` or ``dual_quaternion``; ``influences`` is 4 or 8 for ``lib/skin_vertex.glsl``;
-    ``stretches`` says that bones also scale, which costs dual quaternions a second blend. Raises GpuError for
-    more bones than a texture has rows.
+    ``stretches`` says that bones may also scale, which costs time. Raises GpuError for more bones than a texture
+    has rows.
     """
 
     def __init__(self, gpu: Gpu, bones: int, method: str = "linear", *, influences: int = 4,
@@ -48,6 +48,8 @@ class BonePalette:
         if self.method == "dual_quaternion":
             moved[:, 3], moved[:, 4], stretch = rigid_parts(matrices)
             moved[:, 5:8] = np.eye(4)[:3] if stretch is None else stretch[:, :3]
+        elif not self.stretches:
+            moved[:, 3], moved[:, 4, :3] = nearest_rotation(matrices[:, :3, :3]), matrices[:, :3, 3]
         self._texture.write(self._texels)
 
     def bind(self, program: Program, unit: int) -> None:
