@@ -38,7 +38,7 @@ from viewer import (
 from viewer.kit import limb_pose
 from viewer.kit.arm import CHECKS_AROUND
 from viewer.kit.bone_model import bone_model
-from viewer.kit.bone_pose import bone_named, read_pose, written_pose
+from viewer.kit.bone_pose import bone_named, read_pose, written_name, written_pose
 from viewer.kit.gltf import SUFFIXES, Clip
 from viewer.kit.limb import Limb, limb_at, most_blended_bone, with_falloff
 from viewer.kit.limb_source import model_in
@@ -50,6 +50,7 @@ RAISED = 0.4                            # of the height that a low model leaves 
 APART = 0.88                            # from one limb to the next in a square picture; in wider ones more
 FARTHEST_APART = 1.6
 COMPARED = ("linear", "linear", "dual_quaternion")
+ALONE = len(COMPARED)                   # the column of the limb that stands alone
 EXTRA_BONES = 3                         # in the comparison, where none are asked for
 SWAY_SECONDS = 6.0
 TEXTURE_CHECKS = 16.0                   # for each unit of a model's own texture coordinates
@@ -105,27 +106,29 @@ class TwistingLimb(Scene):
         self.model = model_in(params.model)
         self.mesh = self.model.mesh
         self.names = [self.mesh.skeleton.names[joint] for joint in self.mesh.bones]
+        name = params.bone.strip()
+        self.bone = bone_named(name, self.names) if name else most_blended_bone(self.mesh)      # that is twisted
         self.limb = self.chosen_limb()
         self.shared = LimbModel(gpu, self.model, self.limb)
-        self.compared = [LimbSkin(self.shared, method) for method in COMPARED]
-        self.single = {method: LimbSkin(self.shared, method) for method in dict.fromkeys(COMPARED)}
+        self.skins: dict[tuple[int, str], LimbSkin] = {}
         self.captions, self.bones = LimbCaptions(gpu), Insets(gpu)
         self.followed: Hashable = None
 
-    def chosen_bone(self) -> int:
-        """The bone that is twisted and turned by hand, by its place in the palette."""
-        name = self.params.bone.strip()
-        return bone_named(name, self.names) if name else most_blended_bone(self.mesh)
-
     def chosen_limb(self) -> Limb | None:
         """The limb that ends in that bone, its weights bent as the falloff asks; None where no bone is before it."""
-        limb = limb_at(self.mesh, self.chosen_bone())
+        limb = limb_at(self.mesh, self.bone)
         return with_falloff(limb, self.params.falloff) if limb else None
+
+    def skin(self, column: int, method: str) -> LimbSkin:
+        """A limb of the comparison, by its column, or the one that stands alone and is measured: built when wanted."""
+        if (column, method) not in self.skins:
+            self.skins[column, method] = LimbSkin(self.shared, method)
+        return self.skins[column, method]
 
     # The pose
 
     def prepare(self) -> None:
-        wanted = self.params.revision, self.aspect, self.seconds(), self.shared.generation
+        wanted = self.params.revision, self.aspect, self.seconds(), self.gpu.generation
         if wanted != self.followed:
             self.followed = None
             local = self.local()
@@ -140,8 +143,9 @@ class TwistingLimb(Scene):
         """The limbs in the picture, from left to right, and how many extra bones each has."""
         extra = self.params.twist_bones
         if self.params.view == "single" or not self.limb:
-            return [(self.single[self.params.method], extra)]
-        return list(zip(self.compared, (0, extra or EXTRA_BONES, 0), strict=True))
+            return [(self.skin(ALONE, self.params.method), extra)]
+        skins = [self.skin(column, method) for column, method in enumerate(COMPARED)]
+        return list(zip(skins, (0, extra or EXTRA_BONES, 0), strict=True))
 
     def seconds(self) -> float:
         """The time, where anything moves by it."""
@@ -239,7 +243,7 @@ class TwistingLimb(Scene):
         if self.params.show_bones:
             for (skin, extra), stand in zip(self.shown(), self.stands(), strict=True):
                 places = stand.placed(self.in_studio(skin.joint_places()))
-                self.bones.show(bone_model(self.mesh, places, self.chosen_bone(), self.limb, extra))
+                self.bones.show(bone_model(self.mesh, places, self.bone, self.limb, extra))
                 self.bones.draw(through=True)
         self.captions.draw()
 
@@ -258,7 +262,7 @@ class TwistingLimb(Scene):
         name = self.params.weights.strip()
         if name.lower() in OFF:
             return -1
-        return self.chosen_bone() if name.lower() in ON else bone_named(name, self.names, "weights")
+        return self.bone if name.lower() in ON else bone_named(name, self.names, "weights")
 
     def color_scale(self) -> ColorScale | None:
         weighed = self.weighed_bone()
@@ -268,21 +272,23 @@ class TwistingLimb(Scene):
         nearest, chosen = NEAR_JOINT, ""
         for (skin, _), stand in zip(self.shown(), self.stands(), strict=True):
             away = stand.placed(self.in_studio(skin.joint_places())) - click.origin
-            beside = np.linalg.norm(np.cross(away, click.direction), axis=1) / np.linalg.norm(away, axis=1)
+            depth = away @ click.direction
+            beside = np.linalg.norm(np.cross(away, click.direction), axis=1) / np.maximum(depth, 1e-9)
+            beside[depth <= 0.0] = np.inf       # behind the eye
             if beside.min() < nearest:
-                nearest, chosen = float(beside.min()), self.names[int(beside.argmin())]
+                nearest, chosen = float(beside.min()), written_name(int(beside.argmin()), self.names)
         return {"bone": chosen, "show_bones": True} if chosen else {}
 
     def handle(self) -> Handle | None:
-        if not self.params.show_bones:
+        if not self.params.show_bones or self.params.sway:     # what sways is not to be held
             return None
-        bone, (skin, _) = self.chosen_bone(), self.shown()[len(self.shown()) // 2]
-        matrix = limb_pose.upright(skin.matrices[bone] @ np.linalg.inv(self.mesh.inverse_bind[bone]))
+        bone, (skin, _) = self.bone, self.shown()[len(self.shown()) // 2]
+        matrix = limb_pose.upright(skin.matrices[bone] @ self.mesh.bound_frames[bone])
         matrix[:3, 3] = self.in_studio(matrix[None, :3, 3])[0]
         return Handle(matrix, f"turn {self.names[bone]}")
 
     def drag_handle(self, handle: Handle) -> Mapping[str, object]:
-        p, bone = self.params, self.chosen_bone()
+        p, bone = self.params, self.bone
         turned, twist = limb_pose.turned_by_hand(self.mesh, self.limb, bone, self.moment(), self.local(),
                                                  handle.matrix[:3, :3], p.bend, p.twist)
         pose = read_pose(p.pose, self.names) | {bone: turned}
@@ -292,13 +298,14 @@ class TwistingLimb(Scene):
 
     def measured(self) -> LimbSkin:
         """The limb that is measured and exported: skinned by the chosen method, with the chosen extra bones."""
-        skin = self.single[self.params.method]
+        skin = self.skin(ALONE, self.params.method)
         skin.pose(self.local(), self.twist(), self.params.twist_bones)
         return skin
 
     def geometry(self) -> Geometry:
         skin = self.measured()
-        return {"vertices": skin.posed_places(), "triangles": self.mesh.triangles, "normals": skin.posed_normals(),
+        places, normals = skin.posed()
+        return {"vertices": places, "triangles": self.mesh.triangles, "normals": normals,
                 "rest_vertices": self.mesh.positions, "rest_normals": self.mesh.normals, "joints": skin.joints,
                 "weights": skin.weights, "matrices": skin.matrices}
 
@@ -320,7 +327,7 @@ class TwistingLimb(Scene):
         if model.unnormalised_vertices:
             found.append(f"The weights of {model.unnormalised_vertices} vertices did not sum to 1; now they do.")
         if not self.limb:
-            found.append(f"{self.names[self.chosen_bone()]} has no bone before it: there is no limb to twist.")
+            found.append(f"{self.names[self.bone]} has no bone before it: there is no limb to twist.")
         elif abs(self.twist()) > 180.0 and self.shown()[-1][0].method == "dual_quaternion":
             found.append("Past half a turn dual quaternions take the short way round: they know where a bone is, "
                          "not how it came there.")

@@ -17,7 +17,7 @@ from viewer.engine.catalog import builtin_pack
 from viewer.engine.gpu import Gpu
 from viewer.engine.shaders import ShaderFolders
 from viewer.engine.skin import BonePalette, skin_attributes
-from viewer.engine.skin_pass import SkinPass
+from viewer.engine.skin_pass import SkinPass, texture_of
 from viewer.kit.gltf import read_model
 from viewer.kit.rig import composed
 from viewer.output.headless import shared_context
@@ -76,7 +76,7 @@ def as_pass(arena: Gpu, method: str, positions: Numbers, normals: Numbers, joint
             weights: Numbers, matrices: NDArray[np.float64]) -> Callable[[], object]:
     """A fragment for each vertex, as large models are skinned; the palette is sent each time."""
     palette = BonePalette(arena, BONES, method)
-    skin = SkinPass(arena, positions, normals, joints, weights, palette)
+    skin = SkinPass(arena, [texture_of(arena, positions), texture_of(arena, normals)], joints, weights, palette)
 
     def run() -> None:
         palette.send(matrices)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import moderngl
@@ -13,7 +14,7 @@ from viewer.engine.catalog import builtin_pack
 from viewer.engine.gpu import Gpu, GpuError
 from viewer.engine.shaders import ShaderFolders
 from viewer.engine.skin import BonePalette, skin_attributes
-from viewer.engine.skin_pass import SkinPass
+from viewer.engine.skin_pass import SkinPass, texture_of
 from viewer.kit import skinning
 from viewer.kit.rig import composed
 
@@ -49,7 +50,7 @@ def rig(bones: int, influences: int, *, scaled: bool) -> tuple[np.ndarray, ...]:
 
 
 @pytest.fixture
-def gpu(context: moderngl.Context, tmp_path: Path) -> Gpu:
+def gpu(context: moderngl.Context, tmp_path: Path) -> Iterator[Gpu]:
     """An arena with the shader above, freed by the test's end."""
     (tmp_path / "skin.vert").write_text(SHADER)
     arena = Gpu(context, ShaderFolders([tmp_path, builtin_pack() / "shaders"]))
@@ -94,7 +95,7 @@ def test_a_pass_skins_as_numpy_does(gpu: Gpu, method: str, influences: int, scal
     positions, normals, joints, weights, matrices = rig(20, influences, scaled=scaled)
     palette = BonePalette(gpu, 20, method, influences=influences, stretches=scaled)
     palette.send(matrices)
-    skin = SkinPass(gpu, positions, normals, joints, weights, palette)
+    skin = SkinPass(gpu, [texture_of(gpu, positions), texture_of(gpu, normals)], joints, weights, palette)
     blend = {"linear": "linear_blend", "dual_quaternion": "dual_quaternion"}[method]
     for ways in (joints, (joints + 7) % 20):
         skin.follow(ways, weights)

@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 from viewer.kit import limb_pose
 from viewer.kit.arm import NAMES, arm
 from viewer.kit.bone_pose import PoseError, bone_named, read_pose, written_pose
-from viewer.kit.limb import limb_at, twisted_palette
+from viewer.kit.limb import limb_at
+from viewer.kit.twist_bones import twisted_palette
 
 
 def test_a_pose_is_read_as_it_was_written() -> None:

@@ -9,10 +9,12 @@ import trimesh
 from viewer.kit import skinning
 from viewer.kit.arm import STRAIGHT, arm, straight_area
 from viewer.kit.cross_section import cut, flattened, limb_section
-from viewer.kit.limb import FALLOFFS, Limb, limb_at, most_blended_bone, twisted_palette, with_falloff, with_twist_bones
+from viewer.kit.limb import FALLOFFS, Limb, limb_at, most_blended_bone, with_falloff
 from viewer.kit.limb_measure import LimbGauge, law, thinnest_by_law
 from viewer.kit.mesh import ico_sphere
+from viewer.kit.rig import RiggedMesh, Skeleton, bound_at_rest
 from viewer.kit.surface_sampling import welded
+from viewer.kit.twist_bones import twisted_palette, with_twist_bones
 
 THINNEST = {  # degrees: with 2, 3, 4, 5, 6 bones sharing the twist
     90: (0.707, 0.924, 0.966, 0.981, 0.988), 150: (0.259, 0.793, 0.906, 0.947, 0.966),
@@ -162,3 +164,24 @@ def test_a_cross_section_shrinks_and_turns_by_half_the_twist(degrees: float, kep
     half = np.radians(degrees / 2.0)
     turn = np.array([[np.cos(half), -np.sin(half)], [np.sin(half), np.cos(half)]])
     assert np.allclose(after, kept * before @ turn.T, atol=1e-4)
+
+
+def test_the_bone_that_blends_most_is_found_among_many() -> None:
+    """As by going through all pairs of a bone and its parent, on a chain of bones bound by chance."""
+    chance = np.random.default_rng(6)
+    count, vertices = 30, 400
+    places = chance.normal(size=(count, 3))
+    rig = Skeleton(tuple(map(str, range(count))), np.array([-1, *chance.integers(0, np.arange(1, count))], np.int32),
+                   places, np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)), np.ones((count, 3)))
+    joints = np.argsort(chance.random((vertices, count)), axis=1)[:, :4].astype(np.int32)
+    weights = skinning.normalise_weights(chance.random((vertices, 4)))[0]
+    bones = np.arange(count, dtype=np.int32)
+    ends = chance.normal(size=(vertices, 3)).astype(np.float32)
+    mesh = RiggedMesh(ends, ends, ends[:, :2], joints, weights, np.zeros((1, 3), np.int32), rig, bones,
+                      bound_at_rest(rig, bones))
+    mixed = []
+    for bone in range(count):
+        found = limb_at(mesh, bone)
+        own = np.minimum(found.held * found.share, found.held * (1.0 - found.share)) if found else np.zeros(1)
+        mixed.append(own.sum() * found.length if found else 0.0)
+    assert most_blended_bone(mesh) == int(np.argmax(mixed))

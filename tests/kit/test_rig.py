@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from viewer.kit.rig import Skeleton, bound_at_rest
+from viewer.kit.rig import RiggedMesh, Skeleton, bound_at_rest
 
 PARENTS = np.array([-1, 0, 1, 1, 0, 4, -1], np.int32)
 
@@ -53,3 +53,17 @@ def test_a_child_before_its_parent_is_refused(parents: list[int]) -> None:
     with pytest.raises(ValueError, match="comes before its parent"):
         Skeleton(("a", "b"), np.array(parents, np.int32), np.zeros((2, 3)), np.tile([0.0, 0, 0, 1], (2, 1)),
                  np.ones((2, 3)))
+
+
+def test_a_bone_s_parent_is_the_nearest_that_has_one() -> None:
+    """Joints without a place in the palette are passed over; bones that were bound flat still have a frame."""
+    rig = skeleton()
+    bones = np.array([5, 3, 0], np.int32)
+    inverse = bound_at_rest(rig, bones)
+    inverse[1, :3, :3] = np.diag([1.0, 1.0, 0.0])
+    zeros = np.zeros((1, 3), np.float32)
+    mesh = RiggedMesh(zeros, zeros, zeros[:, :2], np.zeros((1, 4), np.int32), np.array([[1, 0, 0, 0]], np.float32),
+                      np.zeros((1, 3), np.int32), rig, bones, inverse)
+    assert mesh.bone_parents.tolist() == [2, 2, -1]
+    assert np.allclose(mesh.bound_frames[[0, 2]], rig.world()[bones[[0, 2]]])
+    assert np.isfinite(mesh.bound_frames).all()

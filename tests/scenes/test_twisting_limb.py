@@ -295,3 +295,26 @@ def test_a_large_model_looks_and_measures_as_a_small_one(make_stage: MakeStage,
     for name in ("vertices", "normals"):
         assert np.abs(large[1][name] - small[1][name]).max() < 1e-5
     assert large[2] == pytest.approx(small[2], abs=1e-5)
+
+
+@pytest.mark.parametrize("falloff", ["linear", "smooth", "narrow"])
+def test_the_falloff_is_what_is_drawn_and_measured(stage: Stage, falloff: str) -> None:
+    """Its weights are exported, with no extra bones too, and the limb follows the law for them."""
+    stage.set(falloff=falloff, twist=150)
+    found, curve = stage.geometry()["weights"], stage.measure()["radius_along_limb"]
+    assert np.allclose(curve.series["measured"], curve.series["law"], atol=1e-4)
+    share = stage.scene.limb.share
+    assert np.allclose(found[:, 2], share * stage.scene.limb.held, atol=1e-6)
+    blended = ((found[:, 2] > 0.01) & (found[:, 2] < 0.99)).sum()
+    stage.set(falloff="linear")
+    others = stage.geometry()["weights"][:, 2]
+    evenly = ((others > 0.01) & (others < 0.99)).sum()
+    assert blended < 0.5 * evenly if falloff == "narrow" else blended <= evenly
+
+
+def test_what_sways_is_not_to_be_held(stage: Stage) -> None:
+    """The rings would stand at a twist that passes, and write it down."""
+    stage.set(show_bones=True)
+    assert stage.handle()
+    stage.set(sway=True)
+    assert stage.handle() is None

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
-
-import numpy as np
 
 from viewer.engine.annotations import Label
 from viewer.engine.gpu import Gpu
@@ -26,6 +23,7 @@ class LimbCaptions:
     def __init__(self, gpu: Gpu) -> None:
         self._sketch = Sketch(gpu)
         self._captions: list[Caption] = []
+        self._cut: tuple[Limb, float, CrossSection, Numbers] | None = None
 
     def show(self, skins: Sequence[LimbSkin], aspect: float, place: float | None) -> None:
         """Caption these from now on; ``place`` is where they are cut, 0 to 1, or None not to show that."""
@@ -33,7 +31,7 @@ class LimbCaptions:
         for column, skin in enumerate(skins):
             if skin.shared.limb:
                 title, color = titled(skin)
-                outlines = None if place is None else outlined(skin, skin.shared.limb, place)
+                outlines = None if place is None else self._outlined(skin, skin.shared.limb, place)
                 self._captions.append(caption(column, len(skins), title, color, skin.numbers(), outlines, aspect))
         drawn = [strokes(segments, width, color_of(color)) for each in self._captions
                  for segments, width, color in each.drawings]
@@ -53,6 +51,19 @@ class LimbCaptions:
         return [Label(line.text, line.place, line.size, line.color, line.align, line.plate, line.bold)
                 for each in self._captions for line in each.lines]
 
+    def _outlined(self, skin: LimbSkin, limb: Limb, place: float) -> tuple[Outline, Outline] | None:
+        """A limb's cross section as it was bound and as it is, each with the same point of the skin, or None."""
+        if self._cut is None or self._cut[0] is not limb or self._cut[1] != place:
+            section = limb_section(limb, place)
+            bound = section.points(limb.mesh.positions)
+            self._cut = limb, place, section, flattened(limb, bound, place)
+        _, _, section, before = self._cut
+        if not len(section.ends):
+            return None
+        after = flattened(limb, section.points(skin.posed()[0]), place, skin.upper)
+        mark = int(before[:, 0, 0].argmax())
+        return Outline(before, before[mark, 0]), Outline(after, after[mark, 0])
+
 
 def titled(skin: LimbSkin) -> tuple[str, str]:
     """What a way of skinning is called, and its colour."""
@@ -61,20 +72,3 @@ def titled(skin: LimbSkin) -> tuple[str, str]:
     if skin.method == "dual_quaternion":
         return (f"{DUAL[0]}, {bones}" if extra else DUAL[0]), DUAL[1]
     return (bones, EXTRA[1]) if extra else LINEAR
-
-
-def outlined(skin: LimbSkin, limb: Limb, place: float) -> tuple[Outline, Outline] | None:
-    """A limb's cross section as it was bound and as it is, each with the same point of the skin, or None."""
-    section, before = _bound_section(limb, place)
-    if not len(section.ends):
-        return None
-    after = flattened(limb, section.points(skin.posed_places()), place, skin.upper)
-    mark = int(before[:, 0, 0].argmax())
-    return Outline(before, before[mark, 0]), Outline(after, after[mark, 0])
-
-
-@lru_cache(maxsize=4)
-def _bound_section(limb: Limb, place: float) -> tuple[CrossSection, Numbers]:
-    """Where a limb is cut, and the section as it was bound, seen along the axis."""
-    section = limb_section(limb, place)
-    return section, flattened(limb, section.points(limb.mesh.positions.astype(np.float64)), place)

@@ -40,7 +40,7 @@ def _radius_along_limb(skin: LimbSkin, degrees: float, marked: float) -> Curve:
     shares = shared.limb.share[shared.limb.measured]
     rigid = skin.method == "dual_quaternion"
     law = np.ones(len(shares)) if rigid else limb_measure.law(shares, degrees, skin.twist_bones)
-    places, measured, expected = shared.gauge.along(shared.radius_ratios(skin), law)
+    places, measured, expected = shared.gauge.along(skin.radius_ratios(), law)
     return Curve("along", places, {"measured": measured, "law": expected}, x_label="place along the limb",
                  y_label="radius, after / before", now=marked)
 
@@ -49,7 +49,7 @@ def _radius_vs_twist(skin: LimbSkin, local: NDArray[np.float64], degrees: float)
     """How thin the limb becomes at all twists, as the vertex shader has it and by the law; ``skin`` stays as it was."""
     extra, thinnest = skin.twist_bones, []
     for twist in TWISTS:
-        skin.pose(local, float(twist), extra)
+        skin.pose(local, float(twist), extra, probes_only=True)
         thinnest.append(skin.thinnest())
     skin.pose(local, degrees, extra)
     rigid = skin.method == "dual_quaternion"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import moderngl
@@ -21,17 +22,16 @@ Rows = NDArray[np.float32]
 class SkinPass:
     """``run`` moves the vertices of a mesh as ``palette`` has them; vertex n is texel (n % 1024, n / 1024).
 
-    ``positions`` and ``normals`` are (n, 3), ``joints`` and ``weights`` (n, 4) or (n, 8). Raises GpuError for more
-    vertices than textures hold.
+    ``bound`` are its places and normals as textures, which many passes may share, ``joints`` and ``weights`` (n, 4)
+    or (n, 8).
     """
 
-    def __init__(self, gpu: Gpu, positions: Rows, normals: Rows, joints: NDArray[Any], weights: Rows,
+    def __init__(self, gpu: Gpu, bound: Sequence[moderngl.Texture], joints: NDArray[Any], weights: Rows,
                  palette: BonePalette) -> None:
-        self.gpu, self.palette, self.count = gpu, palette, len(positions)
-        self._size = (WIDTH, -(-self.count // WIDTH))
-        self._bound = [self._sent(positions, "f4"), self._sent(normals, "f4")]
-        self._groups = [self._sent(part, kind) for first in range(0, joints.shape[1], 4)
-                        for part, kind in ((joints[:, first:first + 4], "u2"), (weights[:, first:first + 4], "f4"))]
+        self.gpu, self.palette, self.count = gpu, palette, len(joints)
+        self._size = bound[0].size
+        self._bound = list(bound)
+        self._groups = [texture_of(gpu, rows, kind) for rows, kind in grouped(joints, weights)]
         self._made = [gpu.texture(self._size, 4, dtype="f4", label=name) for name in ("posed places", "posed normals")]
         self._target = gpu.framebuffer(self._made, label="posed vertices")
         program = gpu.program("studio/screen.vert", "skin/pass.frag", generated=palette.generated)
@@ -42,10 +42,8 @@ class SkinPass:
 
     def follow(self, joints: NDArray[Any], weights: Rows) -> None:
         """Let the vertices follow other bones."""
-        parts = [part for first in range(0, joints.shape[1], 4)
-                 for part in (joints[:, first:first + 4], weights[:, first:first + 4])]
-        for texture, part in zip(self._groups, parts, strict=True):
-            texture.write(self._padded(part, texture.dtype))
+        for texture, (rows, kind) in zip(self._groups, grouped(joints, weights), strict=True):
+            texture.write(padded(rows, kind))
 
     def run(self, bones_unit: int) -> None:
         """Move all vertices; the palette goes through a texture unit."""
@@ -69,13 +67,22 @@ class SkinPass:
                            for texture in self._made)
         return places, normals
 
-    def _sent(self, rows: NDArray[Any], kind: str) -> moderngl.Texture:
-        made = self.gpu.texture(self._size, 4, self._padded(rows, kind), dtype=kind, label="bound vertices")
-        made.filter = moderngl.NEAREST, moderngl.NEAREST
-        return made
 
-    def _padded(self, rows: NDArray[Any], kind: str) -> NDArray[Any]:
-        """Rows of up to four numbers as the texels of a whole texture."""
-        texels = np.zeros((self._size[0] * self._size[1], 4), kind)
-        texels[:len(rows), :rows.shape[1]] = rows
-        return texels
+def texture_of(gpu: Gpu, rows: NDArray[Any], kind: str = "f4") -> moderngl.Texture:
+    """Rows (n, 3) or (n, 4) as texels, for passes; raises GpuError for more than a texture holds."""
+    made = gpu.texture((WIDTH, -(-len(rows) // WIDTH)), 4, padded(rows, kind), dtype=kind, label="bound vertices")
+    made.filter = moderngl.NEAREST, moderngl.NEAREST
+    return made
+
+
+def padded(rows: NDArray[Any], kind: str) -> NDArray[Any]:
+    """Rows of up to four numbers as the texels of a whole texture."""
+    texels = np.zeros((-(-len(rows) // WIDTH) * WIDTH, 4), kind)
+    texels[:len(rows), :rows.shape[1]] = rows
+    return texels
+
+
+def grouped(joints: NDArray[Any], weights: Rows) -> list[tuple[NDArray[Any], str]]:
+    """Joints and weights by fours, each with the type of its texture."""
+    return [pair for first in range(0, joints.shape[1], 4)
+            for pair in ((joints[:, first:first + 4], "u2"), (weights[:, first:first + 4], "f4"))]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.kit.limb import Limb, parent_bones
+from viewer.kit.limb import Limb
 from viewer.kit.models import Model, rgb
 from viewer.kit.rig import RiggedMesh
 
@@ -16,7 +16,7 @@ RADIUS = 0.02           # of a joint's ball, in the world
 def bone_model(mesh: RiggedMesh, places: NDArray[np.float64], chosen: int, limb: Limb | None,
                twist_bones: int) -> Model:
     """Rods from joint to joint and balls on them, at ``places`` (b, 3) in the world; the limb's end in orange."""
-    model, parents = Model(), parent_bones(mesh)
+    model, parents = Model(), mesh.bone_parents
     children = np.nonzero(parents >= 0)[0]
     plain = children[children != chosen]
     model.rods(places[parents[plain]], places[plain], 0.5 * RADIUS, BONE)

@@ -15,6 +15,8 @@ from viewer.kit import quaternion
 from viewer.kit.quaternion import Numbers
 from viewer.kit.rig import composed
 
+LONGEST_NAME = 100
+
 
 class PoseError(DemoscopeError):
     """A bone that a model does not have, or a pose that cannot be read."""
@@ -51,14 +53,17 @@ def read_pose(text: str, names: Sequence[str]) -> dict[int, Numbers]:
     return pose
 
 
+def written_name(bone: int, names: Sequence[str]) -> str:
+    """The name of a bone, or its number where the name would not be read back."""
+    name = names[bone]
+    readable = name.isprintable() and not set(name) & set(":;") and name.strip() == name and len(name) <= LONGEST_NAME
+    return name if readable and bone_named(name, names) == bone else str(bone)
+
+
 def written_pose(pose: Mapping[int, Numbers], names: Sequence[str]) -> str:
     """The text of a pose; bones that are hardly turned are left out."""
-    def called(bone: int) -> str:
-        name = names[bone]
-        return str(bone) if not name.isprintable() or set(name) & set(":;") or name.strip() != name else name
-
     turned = {bone: vector for bone, vector in sorted(pose.items()) if np.abs(vector).max() >= 0.005}
-    return "; ".join(f"{called(bone)}: " + " ".join(f"{angle:.2f}" for angle in vector)
+    return "; ".join(f"{written_name(bone, names)}: " + " ".join(f"{angle:.2f}" for angle in vector)
                      for bone, vector in turned.items())
 
 

@@ -8,15 +8,14 @@ import numpy as np
 
 from viewer.kit import quaternion
 from viewer.kit.bone_pose import turning
-from viewer.kit.limb import Limb, parent_bones
-from viewer.kit.quaternion import Numbers
+from viewer.kit.limb import Limb
+from viewer.kit.quaternion import Numbers, swing_twist, twist_angle
 from viewer.kit.rig import RiggedMesh, composed
-from viewer.kit.skinning import swing_twist, twist_angle
 
 
 def bent_bone(limb: Limb) -> int:
     """The palette entry that a bend turns: the upper bone, as an elbow does, or where that is a root the lower."""
-    return limb.upper if parent_bones(limb.mesh)[limb.upper] >= 0 else limb.lower
+    return limb.upper if limb.mesh.bone_parents[limb.upper] >= 0 else limb.lower
 
 
 def posed(mesh: RiggedMesh, moment: Numbers, turned: Mapping[int, Numbers]) -> Numbers:

@@ -14,6 +14,7 @@ ARM_COLOR = (0.86, 0.68, 0.52, 1.0)     # linear
 def model_in(path: Path | None) -> RiggedModel:
     """The model in a file, or with None our arm; a file is read once for each version of it.
 
+    What lies beside a ``.gltf`` is read again only when that file itself has changed.
     Raises ModelFileError as ``read_model`` does.
     """
     if path is None:
@@ -25,7 +26,7 @@ def model_in(path: Path | None) -> RiggedModel:
     return _read(path, (status.st_mtime_ns, status.st_size))
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def _read(path: Path, version: tuple[int, int]) -> RiggedModel:
     return read_model(path)
 

@@ -56,10 +56,6 @@ class Skeleton:
             placed[joints] = placed[self.parents[joints]] @ placed[joints]
         return placed
 
-    def children(self, joint: int) -> NDArray[np.intp]:
-        """The joints whose parent is ``joint``."""
-        return np.nonzero(self.parents == joint)[0]
-
 
 @dataclass(frozen=True, eq=False)
 class RiggedMesh:
@@ -83,6 +79,25 @@ class RiggedMesh:
     def palette(self, local: Matrices | None = None) -> Matrices:
         """What takes each bone's vertices from where they were bound to where they are: (b, 4, 4)."""
         return skinning.palette(self.skeleton.world(local)[self.bones], self.inverse_bind)
+
+    @cached_property
+    def bound_frames(self) -> Matrices:
+        """Where the bones' frames were when the mesh was bound, (b, 4, 4); of those with no way back, the nearest."""
+        singular = np.linalg.det(self.inverse_bind) == 0.0
+        frames = np.empty_like(self.inverse_bind)
+        frames[~singular] = np.linalg.inv(self.inverse_bind[~singular])
+        frames[singular] = np.linalg.pinv(self.inverse_bind[singular])
+        return frames
+
+    @cached_property
+    def bone_parents(self) -> NDArray[np.int64]:
+        """For each entry of the palette that of the nearest joint above its own, -1 where there is none: (b,)."""
+        entry_of = {int(joint): entry for entry, joint in reversed(list(enumerate(self.bones)))}
+        entry_above = np.full(len(self.skeleton.parents), -1)
+        for joint, parent in enumerate(self.skeleton.parents.tolist()):
+            if parent >= 0:
+                entry_above[joint] = entry_of.get(parent, entry_above[parent])
+        return np.asarray(entry_above[self.bones], np.int64)
 
     @property
     def influences(self) -> int:
