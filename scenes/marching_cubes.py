@@ -270,8 +270,7 @@ class MarchingCubes(Scene):
 
     def only_outside_seen(self) -> bool:
         """Whether a closed surface hides its inner side: the eye is beside the grid, and nothing is cut away."""
-        eye = -self.view[3, :3] @ self.view[:3, :3].T
-        return bool(np.linalg.norm(eye) > FAR_OFF and self.params.slice == "none" and not self.params.walk)
+        return bool(np.linalg.norm(self.eye) > FAR_OFF and self.params.slice == "none" and not self.params.walk)
 
     def draw_surface(self, method: str, mesh: Isosurface, aside: float) -> None:
         """Draw one surface; in a walk, as far as that has come."""

@@ -54,7 +54,7 @@ ALONE = len(COMPARED)                   # the column of the limb that stands alo
 EXTRA_BONES = 3                         # in the comparison, where none are asked for
 SWAY_SECONDS = 6.0
 TEXTURE_CHECKS = 16.0                   # for each unit of a model's own texture coordinates
-CHECKERED, OWN, WEIGHTS = 0, 1, 2       # what the skin shows, as limb.frag has it
+CHECKERED, OWN, WEIGHTS, PLAIN = range(4)       # what the skin shows, as limb.frag has it
 OFF, ON = ("", "false", "off", "no", "none"), ("true", "on", "yes")
 LIMB, BONES, LOOK = "Limb", "Bones", "Look"
 NEAR_JOINT = 0.03                       # how near to a joint a click is meant for it, in radians
@@ -186,8 +186,8 @@ class TwistingLimb(Scene):
         self.shared.tell("u_model_middle", middle)
         self.shared.tell("u_model_scale", scale)
         self.shared.tell("u_weighed_bone", weighed)
-        self.shared.tell("u_skin_shown", WEIGHTS if weighed >= 0 else CHECKERED if checkered else OWN)
-        self.shared.tell("u_plain", p.skin == "plain")
+        shown = CHECKERED if checkered else PLAIN if p.skin == "plain" else OWN
+        self.shared.tell("u_skin_shown", WEIGHTS if weighed >= 0 else shown)
         self.shared.tell("u_checks", TEXTURE_CHECKS if p.model else 1.0)
         self.shared.tell("u_stripe_every", CHECKS_AROUND)
 
@@ -208,11 +208,10 @@ class TwistingLimb(Scene):
     def stands(self) -> list[Stand]:
         """Where each limb stands: beside the next as the camera sees it, and turned so that all are seen alike."""
         count, right, found = len(self.shown()), self.view[:3, 0], []
-        eye = -self.view[3, :3] @ self.view[:3, :3].T
         for column in range(count):
             aside = self.apart() * (column - 0.5 * (count - 1)) * right
-            seen, straight = eye - aside, eye
-            turned = math.atan2(seen[0], seen[2]) - math.atan2(straight[0], straight[2])
+            seen = self.eye - aside
+            turned = math.atan2(seen[0], seen[2]) - math.atan2(self.eye[0], self.eye[2])
             found.append(Stand((float(aside[0]), float(aside[1]), float(aside[2])), turned))
         return found
 

@@ -4,7 +4,8 @@
 //     BONES_STRETCH       whether bones also scale or shear; where they do not, less of them is read
 //     INFLUENCES          4 or 8, the most that a vertex has
 // void skinned(inout vec3 position, inout vec3 normal, uvec4 joints, vec4 weights)
-// void skinned(inout vec3 position, inout vec3 normal, uvec4 joints, vec4 weights, uvec4 more_joints, vec4 more_weights)
+// void skinned(inout vec3 position, inout vec3 normal, uvec4 joints, vec4 weights,
+//              uvec4 more_joints, vec4 more_weights)
 
 const int LINEAR_BLEND = 0;
 const int DUAL_QUATERNION = 1;

@@ -3,12 +3,11 @@
 #include "lib/lighting.glsl"
 #include "lib/color.glsl"
 
-const int CHECKERED = 0, OWN = 1, WEIGHTS = 2;
+const int CHECKERED = 0, OWN = 1, WEIGHTS = 2, PLAIN = 3;
 
 uniform int u_skin_shown;
 uniform vec4 u_base_color;        // linear
 uniform bool u_has_texture;
-uniform bool u_plain;
 uniform sampler2D u_texture;
 uniform float u_roughness;
 uniform float u_checks;           // how many for each unit of texture coordinates
@@ -44,11 +43,9 @@ vec3 checkers() {
 
 void main() {
     vec3 normal = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
-    vec3 color = u_plain ? vec3(0.62, 0.56, 0.50) : u_base_color.rgb;
-    if (u_skin_shown == OWN && u_has_texture && !u_plain) {
-        vec4 texel = texture(u_texture, v_texcoord);
-        color *= linear_light(texel.rgb);
-    }
+    vec3 color = u_skin_shown == PLAIN ? vec3(0.62, 0.56, 0.50) : u_base_color.rgb;
+    if (u_skin_shown == OWN && u_has_texture)
+        color *= linear_light(texture(u_texture, v_texcoord).rgb);
     if (u_skin_shown == CHECKERED)
         color = checkers();
     if (u_skin_shown == WEIGHTS)

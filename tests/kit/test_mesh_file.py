@@ -11,7 +11,7 @@ import trimesh
 
 from viewer.kit.mesh_file import SUFFIXES, MeshFileError, read_mesh
 
-MODELS = Path("/work/shared/models")
+MODELS = Path(__file__).parents[3] / "shared" / "models"
 BALL = trimesh.creation.icosphere(2)
 
 

@@ -205,6 +205,11 @@ class Scene:
         return self.frame * FRAME_SECONDS
 
     @property
+    def eye(self) -> NDArray[np.float64]:
+        """Where the camera is, (3,)."""
+        return np.asarray(-self.view[3, :3] @ self.view[:3, :3].T)
+
+    @property
     def simulates(self) -> bool:
         """Whether it has an ``update``, so that each frame follows from the one before."""
         return type(self).update is not Scene.update

@@ -62,8 +62,10 @@ def skin_attributes(gpu: Gpu, joints: NDArray[Any], weights: NDArray[Any]) -> li
     """What a vertex array needs for skinning: ``joints`` and ``weights`` (n, 4) or (n, 8).
 
     The attributes are ``in_joints`` and ``in_weights``, beyond four influences ``in_more_joints`` and
-    ``in_more_weights`` too.
+    ``in_more_weights`` too. Raises ValueError for any other number of columns.
     """
+    if joints.shape[1] not in (4, 8) or joints.shape != weights.shape:
+        raise ValueError(f"joints {joints.shape} and weights {weights.shape} are not four or eight for each vertex")
     ways = gpu.buffer(np.ascontiguousarray(joints, "u2"), label="joints")
     shares = gpu.buffer(np.ascontiguousarray(weights, "f4"), label="weights")
     groups = joints.shape[1] // 4

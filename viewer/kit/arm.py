@@ -18,7 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from viewer.kit.mesh import Mesh, Vertices, quads_to_triangles, smooth_normals
+from viewer.kit.mesh import Mesh, Vertices, area_weighted_normals, quads_to_triangles
 from viewer.kit.quaternion import IDENTITY
 from viewer.kit.rig import RiggedMesh, Skeleton, bound_at_rest
 
@@ -75,7 +75,7 @@ def arm() -> RiggedMesh:
     skeleton = _skeleton()
     bones = np.arange(3, dtype=np.int32)
     return RiggedMesh(
-        positions.astype(np.float32), smooth_normals(positions, triangles).astype(np.float32),
+        positions.astype(np.float32), area_weighted_normals(positions, triangles).astype(np.float32),
         np.concatenate([limb_checks, *(checks for _, checks in tubes)]).astype(np.float32),
         np.broadcast_to(np.array([0, 1, 2, 0], np.int32), (len(positions), 4)).copy(), shares.astype(np.float32),
         triangles.astype(np.int32), skeleton, bones, bound_at_rest(skeleton, bones))

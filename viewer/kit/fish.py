@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,7 +74,9 @@ def fish_pieces(species: str, detail: int = 3) -> dict[str, Piece]:
 @lru_cache
 def fish_skeleton(species: str) -> Skeleton:
     """The joints of a species' fins; the same names in the same order for all of them."""
-    return fish_joints.skeleton(_species(species))
+    skeleton = fish_joints.skeleton(_species(species))
+    _shared(skeleton.parents, skeleton.translations, skeleton.rotations, skeleton.scales)
+    return skeleton
 
 
 @lru_cache(maxsize=64)
@@ -82,8 +84,10 @@ def fish_rig(species: str, detail: int = 3) -> RiggedMesh:
     """A fish bound to its skeleton; its palette has every joint, in the skeleton's order."""
     mesh, skeleton = fish(species, detail), fish_skeleton(species)
     bones = np.arange(len(skeleton.names), dtype=np.int32)
+    inverse_bind = bound_at_rest(skeleton, bones)
+    _shared(bones, inverse_bind)
     return RiggedMesh(mesh.positions, mesh.normals, mesh.coordinates, mesh.joints, mesh.weights, mesh.triangles,
-                      skeleton, bones, bound_at_rest(skeleton, bones))
+                      skeleton, bones, inverse_bind)
 
 
 @lru_cache
@@ -91,7 +95,9 @@ def fish_mesh(species: str = "koi", detail: int = 3) -> Mesh:
     """A fish as closed pieces that share their vertices: (n, 3) in metres, and triangles (m, 3)."""
     mesh = fish(species, detail)
     vertices, index = np.unique(mesh.positions.astype(np.float64).round(7) + 0.0, axis=0, return_inverse=True)
-    return vertices, index.reshape(-1)[mesh.triangles].astype(np.int32)
+    triangles = index.reshape(-1)[mesh.triangles].astype(np.int32)
+    _shared(vertices, triangles)
+    return vertices, triangles
 
 
 def _species(name: str) -> Species:
@@ -111,6 +117,11 @@ def _joined(parts: list[Piece]) -> FishMesh:
         np.concatenate([piece.joints for piece in parts]),
         np.concatenate([piece.weights for piece in parts]).astype(np.float32),
         np.concatenate(triangles).astype(np.int32))
-    for array in mesh:
-        array.setflags(write=False)     # they are shared by all who ask
+    _shared(*mesh)
     return mesh
+
+
+def _shared(*arrays: NDArray[Any]) -> None:
+    """Lock arrays that all who ask are given."""
+    for array in arrays:
+        array.setflags(write=False)

@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 Point: TypeAlias = tuple[float, float]
 Vector: TypeAlias = tuple[float, float, float]
-NOSE, TAIL_TIP = 0.5, -0.5      # x
+NOSE = 0.5      # x
 
 
 class Part(IntEnum):

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Numbers: TypeAlias = NDArray[np.float64]
 STRIDE = 0.7            # body lengths with each beat: Bainbridge, "The Speed of Swimming of Fish", 1958
-STILL = 1e-6            # a spine that swings less does not swing
+STILL = 1e-6            # body lengths: a spine that swings less does not swing
+LEAST_DELAY = 1e-6      # radians from a place to the next: with less no wave runs
 
 
 class Gait(NamedTuple):
@@ -57,4 +58,4 @@ def _wavelength(aside: Numbers) -> float:
     if np.abs(swing).max() < STILL * moments:
         return float("inf")
     step = float(np.angle(np.vdot(swing[:-1], swing[1:])))
-    return 2.0 * np.pi / (-step * (places - 1)) if step < -STILL else float("inf")
+    return 2.0 * np.pi / (-step * (places - 1)) if step < -LEAST_DELAY else float("inf")

@@ -37,6 +37,6 @@ def decoded(data: memoryview, most_pixels: int) -> Pixels:
         except ImageError:
             raise
         except Image.DecompressionBombError:
-            raise ImageError(f"has far too many pixels; {MOST_PIXELS:,} are allowed for all images") from None
+            raise ImageError(f"it has far too many pixels; {MOST_PIXELS:,} are allowed for all images") from None
         except Exception as error:                      # decoders raise whatever their parsing runs into
             raise ImageError("it is damaged, or not PNG, JPEG or WebP") from error

@@ -101,7 +101,7 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return vectors / np.where(length > 0.0, length, 1.0)
 
 
-def smooth_normals(vertices: Vertices, triangles: Triangles) -> Vertices:
+def area_weighted_normals(vertices: Vertices, triangles: Triangles) -> Vertices:
     """Normals (n, 3) of length one: the mean of the faces around, by area, also across vertices at the same place.
 
     Zero for a vertex that no triangle with an area uses.

@@ -33,7 +33,7 @@ class CellGrid:
         return self.size[0] * self.size[1] * self.size[2]
 
     def sort(self, places: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The order (n,) of the cells that at most 65,536 ``places`` (n, 3) lie in, and the cell of each in that order.
+        """The order (n,) of the cells that at most 65,535 ``places`` (n, 3) lie in, and the cell of each in that order.
 
         Who lies in the same cell keeps its order; who lies outside the box counts to the nearest cell within.
         """
