@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viewer import (
+    CarriedWords,
     Click,
     ColorScale,
     Geometry,
@@ -38,14 +39,16 @@ from viewer import (
 from viewer.kit import limb_pose
 from viewer.kit.arm import CHECKS_AROUND
 from viewer.kit.bone_model import bone_model
-from viewer.kit.bone_pose import bone_named, read_pose, written_name, written_pose
+from viewer.kit.bone_pose import bone_named, clip_named, read_pose, written_name, written_pose
 from viewer.kit.gltf import SUFFIXES, Clip
 from viewer.kit.limb import Limb, limb_at, most_blended_bone, with_falloff
 from viewer.kit.limb_source import model_in
 
 GROUND = -1.06
 TALLEST, WIDEST = 2.16, 2.5             # how large a model stands in the studio
+LEAST_SEEN = 0.6                        # of a long model's length, for which there is room however it is turned
 HEADS = 0.95                            # how high in the picture limbs may reach
+LETTERS_HIGH, SMALLEST_LETTERS = 36.0, 12.0     # a picture in standard letters, and these at least in pixels
 RAISED = 0.4                            # of the height that a low model leaves free, how much is below it
 APART = 0.88                            # from one limb to the next in a square picture; in wider ones more
 FARTHEST_APART = 1.6
@@ -57,6 +60,8 @@ TEXTURE_CHECKS = 16.0                   # for each unit of a model's own texture
 CHECKERED, OWN, WEIGHTS, PLAIN = range(4)       # what the skin shows, as limb.frag has it
 OFF, ON = ("", "false", "off", "no", "none"), ("true", "on", "yes")
 LIMB, BONES, LOOK = "Limb", "Bones", "Look"
+WORDS = ("bone", "pose", "weights", "animation")        # what speaks of a model's own bones and animations
+SPARSE = 0.1                            # by how much thinner between vertices than at them is worth a remark
 NEAR_JOINT = 0.03                       # how near to a joint a click is meant for it, in radians
 
 
@@ -106,13 +111,21 @@ class TwistingLimb(Scene):
         self.model = model_in(params.model)
         self.mesh = self.model.mesh
         self.names = [self.mesh.skeleton.names[joint] for joint in self.mesh.bones]
-        name = params.bone.strip()
-        self.bone = bone_named(name, self.names) if name else most_blended_bone(self.mesh)      # that is twisted
+        self.words = CarriedWords(params, WORDS, params.model)
+        name = self.word("bone")
+        self.bone = self.words.meant("bone", lambda: bone_named(name, self.names) if name else -1, -1)
+        if self.bone < 0:       # the one that is twisted
+            self.bone = most_blended_bone(self.mesh)
         self.limb = self.chosen_limb()
         self.shared = LimbModel(gpu, self.model, self.limb)
         self.skins: dict[tuple[int, str], LimbSkin] = {}
         self.captions, self.bones = LimbCaptions(gpu), Insets(gpu)
         self.followed: Hashable = None
+        self.words.settle()
+
+    def word(self, name: str) -> str:
+        """What was typed for a parameter, without blanks around it."""
+        return str(self.params.get(name)).strip()
 
     def chosen_limb(self) -> Limb | None:
         """The limb that ends in that bone, its weights bent as the falloff asks; None where no bone is before it."""
@@ -128,14 +141,15 @@ class TwistingLimb(Scene):
     # The pose
 
     def prepare(self) -> None:
-        wanted = self.params.revision, self.aspect, self.seconds(), self.gpu.generation
+        wanted = self.params.revision, self.aspect, self.letters(), self.seconds(), self.gpu.generation
         if wanted != self.followed:
             self.followed = None
             local = self.local()
             for skin, twist_bones in self.shown():
                 skin.pose(local, self.twist(), twist_bones)
             place = self.params.slice if self.params.show_slice else None
-            self.captions.show([skin for skin, _ in self.shown()], self.aspect, place)
+            self.captions.show([skin for skin, _ in self.shown()], self.aspect,
+                               self.apart() / self.half_height(), place, self.letters())
             self.tell_shaders()
             self.followed = wanted
 
@@ -158,10 +172,11 @@ class TwistingLimb(Scene):
 
     def clip(self) -> Clip | None:
         """The animation that plays."""
-        name, clips = self.params.animation.strip(), self.model.clips
+        name, clips = self.word("animation"), self.model.clips
         if name.lower() in OFF[1:] or not (clips or name):
             return None
-        return clips[bone_named(name, [clip.name for clip in clips], "animation", "animations") if name else 0]
+        number = self.words.meant("animation", lambda: clip_named(name, clips) if name else 0, 0)
+        return clips[number] if clips else None
 
     def moment(self) -> NDArray[np.float64]:
         """Each joint in its parent's frame, (j, 4, 4), as the animation has it now, or at rest."""
@@ -173,8 +188,12 @@ class TwistingLimb(Scene):
 
     def local(self) -> NDArray[np.float64]:
         """The same after what hands have turned, and bent; only the twist is still to come."""
-        pose = limb_pose.posed(self.mesh, self.moment(), read_pose(self.params.pose, self.names))
+        pose = limb_pose.posed(self.mesh, self.moment(), self.turned())
         return limb_pose.bent(self.limb, pose, self.params.bend) if self.limb else pose
+
+    def turned(self) -> dict[int, NDArray[np.float64]]:
+        """Which bones hands have turned, and how: rotation vectors in degrees."""
+        return self.words.meant("pose", lambda: read_pose(self.params.pose, self.names), {})
 
     # In the studio
 
@@ -188,6 +207,7 @@ class TwistingLimb(Scene):
         self.shared.tell("u_weighed_bone", weighed)
         shown = CHECKERED if checkered else PLAIN if p.skin == "plain" else OWN
         self.shared.tell("u_skin_shown", WEIGHTS if weighed >= 0 else shown)
+        self.shared.tell("u_pale", p.show_bones and weighed < 0)
         self.shared.tell("u_checks", TEXTURE_CHECKS if p.model else 1.0)
         self.shared.tell("u_stripe_every", CHECKS_AROUND)
 
@@ -201,9 +221,12 @@ class TwistingLimb(Scene):
         width, height, depth = (float(length) for length in high - low)
         room = 0.95 * self.apart() if len(self.shown()) > 1 else WIDEST
         tall = min(TALLEST, (HEADS - self.lowest()) * self.half_height()) if self.limb else TALLEST
-        scale = min(tall / max(height, 1e-9), room / max(math.hypot(width, depth), 1e-9))
-        across, _, along = (float(place) for place in 0.5 * (low + high))
-        return (across, float(low[1]) - GROUND / scale, along), scale
+        start = math.radians(self.camera.yaw)
+        seen = abs(width * math.cos(start)) + abs(depth * math.sin(start))
+        across = max(seen, LEAST_SEEN * math.hypot(width, depth), 1e-9)
+        scale = min(tall / max(height, 1e-9), room / across)
+        x, _, z = (float(place) for place in 0.5 * (low + high))
+        return (x, float(low[1]) - GROUND / scale, z), scale
 
     def stands(self) -> list[Stand]:
         """Where each limb stands: beside the next as the camera sees it, and turned so that all are seen alike."""
@@ -229,6 +252,10 @@ class TwistingLimb(Scene):
         """How much of the world the picture shows from its middle up, where the camera starts."""
         angle = math.radians(0.5 * self.camera.field_of_view)
         return self.camera.distance * math.tan(angle) / min(1.0, self.aspect)
+
+    def letters(self) -> float:
+        """The height of standard letters, in half heights of the picture."""
+        return 2.0 * max(SMALLEST_LETTERS / self.gpu.context.fbo.height, 1.0 / LETTERS_HIGH)
 
     def lowest(self) -> float:
         """How low in the picture limbs may stand: above their captions."""
@@ -258,10 +285,10 @@ class TwistingLimb(Scene):
 
     def weighed_bone(self) -> int:
         """The bone whose weights are shown; -1 where none are."""
-        name = self.params.weights.strip()
-        if name.lower() in OFF:
-            return -1
-        return self.bone if name.lower() in ON else bone_named(name, self.names, "weights")
+        name = self.word("weights")
+        if name.lower() in (*OFF, *ON):
+            return self.bone if name.lower() in ON else -1
+        return self.words.meant("weights", lambda: bone_named(name, self.names, "weights"), -1)
 
     def color_scale(self) -> ColorScale | None:
         weighed = self.weighed_bone()
@@ -290,7 +317,7 @@ class TwistingLimb(Scene):
         p, bone = self.params, self.bone
         turned, twist = limb_pose.turned_by_hand(self.mesh, self.limb, bone, self.moment(), self.local(),
                                                  handle.matrix[:3, :3], p.bend, p.twist)
-        pose = read_pose(p.pose, self.names) | {bone: turned}
+        pose = self.turned() | {bone: turned}
         return {"pose": written_pose(pose, self.names), "twist": min(360.0, max(-360.0, twist))}
 
     # What it tells
@@ -316,13 +343,15 @@ class TwistingLimb(Scene):
         found = skin.numbers()
         if self.limb is None or found is None or not len(self.limb.measured):
             return numbers
-        ratios = {"min_radius_ratio": found.min_radius_ratio, "volume_ratio": found.volume_ratio,
-                  "area_ratio": found.area_ratio}
+        ratios = {"min_radius_ratio": found.min_radius_ratio, "thinnest": found.thinnest,
+                  "volume_ratio": found.volume_ratio, "area_ratio": found.area_ratio}
         curves = limb_curves(skin, self.local(), self.twist(), self.params.slice)
         return {**ratios, **numbers, **curves, "comparison": limb_comparison([skin for skin, _ in self.shown()])}
 
     def remarks(self) -> Sequence[str]:
-        found, model = list(self.model.notes), self.model
+        found, model = [*self.model.notes, *self.words.remarks()], self.model
+        if any(each.thinnest < each.min_radius_ratio - SPARSE for each in self.captions.numbers):
+            found.append("Between its rings of vertices this skin is thinner than at them: they are too far apart.")
         if model.unnormalised_vertices:
             found.append(f"The weights of {model.unnormalised_vertices} vertices did not sum to 1; now they do.")
         if not self.limb:

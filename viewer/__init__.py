@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from viewer.engine.annotations import Click, Handle, Label, Table
     from viewer.engine.camera import Orbit
+    from viewer.engine.carried_words import CarriedWords
     from viewer.engine.cell_inspector import CellInspector
     from viewer.engine.declarations import (
         choice,
@@ -65,6 +66,7 @@ __version__ = "0.1.0"
 __all__ = [
     "WATERS",
     "BonePalette",
+    "CarriedWords",
     "CellInspector",
     "Click",
     "ColorScale",
@@ -142,7 +144,7 @@ __all__ = [
 _HOMES = ("errors", "engine.fields", "engine.params", "engine.declarations", "engine.camera", "engine.annotations",
           "engine.gpu", "engine.formula_shader", "engine.field_samples", "engine.vertex_textures",
           "engine.isosurface", "engine.cell_inspector", "engine.insets", "engine.sketch", "engine.skin",
-          "engine.limb_skin", "engine.limb_captions", "engine.limb_report",
+          "engine.limb_skin", "engine.limb_captions", "engine.carried_words", "engine.limb_report",
           "engine.scene", "engine.stage", "output.headless",
           *(f"engine.particles.{noun}" for noun in ("system", "look", "sprites", "solid", "inspector", "draw_timer",
                                                     "trails", "strands")),

@@ -10,6 +10,7 @@ uniform vec4 u_base_color;        // linear
 uniform bool u_has_texture;
 uniform sampler2D u_texture;
 uniform float u_roughness;
+uniform bool u_pale;              // behind bones that are to be seen
 uniform float u_checks;           // how many for each unit of texture coordinates
 uniform int u_stripe_every;       // every how many columns of the pattern one is painted as a stripe
 
@@ -50,5 +51,7 @@ void main() {
         color = checkers();
     if (u_skin_shown == WEIGHTS)
         color = viridis(v_weight);
+    if (u_pale)
+        color = mix(color, vec3(0.5 * dot(color, vec3(0.3, 0.5, 0.2)) + 0.2), 0.6);
     out_color = vec4(studio_light(v_position, normal, color, u_roughness), 1.0);
 }

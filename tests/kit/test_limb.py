@@ -74,6 +74,7 @@ def test_bones_that_share_a_twist_keep_a_limb_thick(degrees: int, falloff: str) 
     for twist_bones, expected in enumerate(THINNEST[degrees]):
         found = gauge.numbers(*twisted(gauge.limb, degrees, twist_bones))
         assert found.min_radius_ratio == pytest.approx(expected, abs=0.002)
+        assert found.thinnest == pytest.approx(expected, abs=0.005)
         assert thinnest_by_law(degrees, twist_bones) == pytest.approx(expected, abs=0.0006)
 
 
@@ -93,7 +94,7 @@ def test_nothing_changes_without_a_twist_or_by_moving_the_whole() -> None:
     moved = np.array([[0.0, -2.0, 0.0, 5.0], [2.0, 0.0, 0.0, 1.0], [0.0, 0.0, 2.0, -3.0], [0.0, 0.0, 0.0, 1.0]])
     places = gauge.limb.mesh.positions @ moved[:3, :3].T + moved[:3, 3]
     for found in (gauge.numbers(*twisted(gauge.limb, 0.0, 3)), gauge.numbers(places, moved)):
-        assert tuple(vars(found).values()) == pytest.approx((1.0, 1.0, 1.0))
+        assert tuple(vars(found).values()) == pytest.approx((1.0, 1.0, 1.0, 1.0))
 
 
 @pytest.mark.parametrize("twist_bones", [0, 1, 3, 8])

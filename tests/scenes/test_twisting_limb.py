@@ -237,6 +237,7 @@ def test_a_click_on_a_joint_chooses_its_bone(stage: Stage) -> None:
 def test_the_rings_turn_the_bone_and_twist_the_limb(stage: Stage) -> None:
     """About the limb's axis it is the twist, beside it the bone's own pose; where it is let go, there it stands."""
     assert stage.handle() is None
+    stage.resize((640, 360))
     stage.set(show_bones=True, twist=20)
     stage.render()
     handle = stage.handle()
@@ -318,3 +319,31 @@ def test_what_sways_is_not_to_be_held(stage: Stage) -> None:
     assert stage.handle()
     stage.set(sway=True)
     assert stage.handle() is None
+
+
+@with_models
+def test_words_for_one_model_do_not_keep_another_out(stage: Stage) -> None:
+    """A joint that was clicked, a pose, weights: what the new model does not know is passed over, and told."""
+    stage.set(bone="hand", pose="hand: 10 0 0", weights="forearm")
+    stage.set(model=str(MODELS / "Fox.glb"))
+    stage.render()
+    told = [remark for remark in stage.remarks() if remark.startswith("Not used: ")]
+    assert len(told) == 3 and any("bone = hand is none of the model's bones _rootJoint" in remark for remark in told)
+    with pytest.raises(DemoscopeError, match="bone = foot is none"):
+        stage.set(bone="foot")
+    stage.set(bone="b_Tail02_013", pose="", weights="on")
+    assert not [remark for remark in stage.remarks() if remark.startswith("Not used: ")]
+    stage.set(model=None)
+    assert any("bone = b_Tail02_013" in remark for remark in stage.remarks())
+
+
+@with_models
+def test_rings_that_are_too_far_apart_are_told(make_stage: MakeStage) -> None:
+    """At its vertices the skin keeps its radius, on the edges between them it does not."""
+    stage = make_stage("", name="twisting_limb", params={
+        "model": str(MODELS / "RiggedSimple.glb"), "twist": 180, "method": "dual_quaternion"})
+    read = stage.measure()
+    assert read["min_radius_ratio"] == pytest.approx(1.0, abs=1e-3) and read["thinnest"] < 0.5
+    assert any("too far apart" in remark for remark in stage.remarks())
+    stage.set(model=None)                           # our arm has rings enough
+    assert stage.measure()["thinnest"] == pytest.approx(1.0, abs=0.002) and not stage.remarks()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from viewer.engine.annotations import Label
 from viewer.engine.gpu import Gpu
@@ -11,6 +13,7 @@ from viewer.engine.sketch import Sketch, strokes
 from viewer.kit.cross_section import CrossSection, flattened, limb_section
 from viewer.kit.limb import Limb
 from viewer.kit.limb_caption import Caption, Outline, caption
+from viewer.kit.limb_measure import LimbNumbers
 from viewer.kit.quaternion import Numbers
 from viewer.kit.srgb import color_of
 
@@ -22,17 +25,30 @@ class LimbCaptions:
 
     def __init__(self, gpu: Gpu) -> None:
         self._sketch = Sketch(gpu)
+        self.numbers: list[LimbNumbers] = []        # of the limbs that are captioned
         self._captions: list[Caption] = []
         self._cut: tuple[Limb, float, CrossSection, Numbers] | None = None
 
-    def show(self, skins: Sequence[LimbSkin], aspect: float, place: float | None) -> None:
-        """Caption these from now on; ``place`` is where they are cut, 0 to 1, or None not to show that."""
-        self._captions = []
+    def show(self, skins: Sequence[LimbSkin], aspect: float, apart: float, place: float | None,
+             em: float) -> None:
+        """Caption these from now on, ``apart`` half heights of the picture from one to the next.
+
+        ``place`` is where they are cut, 0 to 1, or None not to show that; ``em`` a standard letter height, in half
+        heights too.
+        """
+        room = min(apart, 2.0 * aspect / len(skins)) if len(skins) > 1 else 2.0 * aspect
+        self._captions, self.numbers = [], []
         for column, skin in enumerate(skins):
             if skin.shared.limb:
                 title, color = titled(skin)
+                numbers = skin.numbers()
+                if numbers and skin.is_bent:
+                    numbers = replace(numbers, min_radius_ratio=math.nan, thinnest=math.nan)    # there is no one axis
+                self.numbers += [numbers] if numbers else []
                 outlines = None if place is None else self._outlined(skin, skin.shared.limb, place)
-                self._captions.append(caption(column, len(skins), title, color, skin.numbers(), outlines, aspect))
+                self._captions.append(caption(
+                    apart / aspect * (column - 0.5 * (len(skins) - 1)), room, title, color, numbers, outlines,
+                    aspect, em))
         drawn = [strokes(segments, width, color_of(color)) for each in self._captions
                  for segments, width, color in each.drawings]
         self._sketch.show([each.rectangle for each in self._captions], drawn)

@@ -42,7 +42,7 @@ def _radius_along_limb(skin: LimbSkin, degrees: float, marked: float) -> Curve:
     law = np.ones(len(shares)) if rigid else limb_measure.law(shares, degrees, skin.twist_bones)
     places, measured, expected = shared.gauge.along(skin.radius_ratios(), law)
     return Curve("along", places, {"measured": measured, "law": expected}, x_label="place along the limb",
-                 y_label="radius, after / before", now=marked)
+                 y_label="radius, after / before", now=marked, dots=("measured",))
 
 
 def _radius_vs_twist(skin: LimbSkin, local: NDArray[np.float64], degrees: float) -> Curve:
@@ -55,4 +55,4 @@ def _radius_vs_twist(skin: LimbSkin, local: NDArray[np.float64], degrees: float)
     rigid = skin.method == "dual_quaternion"
     law = np.ones(len(TWISTS)) if rigid else limb_measure.thinnest_by_law(TWISTS, extra)
     return Curve("twist", TWISTS, {"measured": thinnest, "law": law}, x_label="twist (degrees)",
-                 y_label="smallest radius, after / before", now=degrees)
+                 y_label="smallest radius, after / before", now=degrees, dots=("measured",))

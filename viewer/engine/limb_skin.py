@@ -18,7 +18,7 @@ from viewer.engine.skin import BonePalette, skin_attributes
 from viewer.engine.skin_pass import SkinPass, texture_of
 from viewer.kit.limb import Limb
 from viewer.kit.limb_measure import LimbGauge, LimbNumbers
-from viewer.kit.quaternion import Numbers
+from viewer.kit.quaternion import Numbers, nearest_rotation, swing_twist
 from viewer.kit.skinning import RIGID_WITHIN, linear_blend, rigid_parts
 from viewer.kit.twist_bones import twisted_palette, with_twist_bones
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 MOST_TWIST_BONES = 8
 MOST_PROBES = 1500
+MOST_SWING = math.radians(8.0)      # of a limb that still counts as straight
 LARGE = 100_000         # vertices, from which on they are posed once, not whenever they are drawn
 BONES_UNIT, TEXTURE_UNIT = 0, 1
 Rows = NDArray[np.float32]
@@ -171,6 +172,16 @@ class LimbSkin:
     def upper(self) -> Numbers:
         """What moved the limb as a whole, (4, 4)."""
         return np.asarray(self.matrices[self.shared.limb.upper]) if self.shared.limb else np.eye(4)
+
+    @property
+    def is_bent(self) -> bool:
+        """Whether the limb's lower bone is not only twisted against the upper: then it has no one axis."""
+        limb = self.shared.limb
+        if limb is None:
+            return False
+        between = nearest_rotation(np.linalg.pinv(self.upper[:3, :3]) @ self.matrices[limb.lower][:3, :3])
+        swing, _ = swing_twist(between, limb.axis)
+        return bool(abs(swing[3]) < math.cos(0.5 * MOST_SWING))
 
     def pose(self, local: Numbers, degrees: float, twist_bones: int = 0, *, probes_only: bool = False) -> None:
         """Stand as ``local`` (j, 4, 4) says, the limb twisted by ``degrees``, which extra bones share.

@@ -45,7 +45,8 @@ class Curve:
     """One or more series over a common axis, for a plot and for JSON.
 
     ``x`` (n,) is named ``x_name``; every array in ``series`` is (n,). ``log_x`` and ``log_y`` ask for
-    logarithmic axes; labels carry the units. ``now`` marks where on the axis the parameters stand.
+    logarithmic axes; labels carry the units. ``now`` marks where on the axis the parameters stand; the series
+    named in ``dots`` are drawn as some dots over the lines, for what was measured where another is expected.
     """
 
     x_name: str
@@ -56,6 +57,7 @@ class Curve:
     log_x: bool = False
     log_y: bool = False
     now: float | None = None
+    dots: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         lengths = {np.asarray(values, np.float64).size for values in (self.x, *self.series.values())}

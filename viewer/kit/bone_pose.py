@@ -12,6 +12,7 @@ import numpy as np
 
 from viewer.errors import DemoscopeError
 from viewer.kit import quaternion
+from viewer.kit.gltf_clip import Clip
 from viewer.kit.quaternion import Numbers
 from viewer.kit.rig import composed
 
@@ -36,6 +37,13 @@ def bone_named(name: str, names: Sequence[str], what: str = "bone", kind: str = 
     hint = f"; did you mean {names[lowered.index(close[0])]}?" if close else ""
     some = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     raise PoseError(f"{what} = {word[:60]} is none of the model's {kind} {some}{hint}")
+
+
+def clip_named(name: str, clips: Sequence[Clip]) -> int:
+    """The number of the animation called ``name``, or with that number; raises PoseError."""
+    if not clips:
+        raise PoseError(f"animation = {name[:60]} is not there: the model has no animations")
+    return bone_named(name, [clip.name for clip in clips], "animation", "animations")
 
 
 def read_pose(text: str, names: Sequence[str]) -> dict[int, Numbers]:

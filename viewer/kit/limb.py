@@ -15,7 +15,8 @@ from viewer.kit.rig import RiggedMesh
 SAME_PLACE = 1e-6       # of a model's size: joints that are nearer to each other are one
 WHOLE = 0.999           # of a vertex's weight that the two bones must hold for it to be theirs alone
 OFF_AXIS = 0.04         # of the limb's length: what is nearer to the axis has no radius to speak of
-MIXED = 1e-3            # how far from 0 and 1 a share has to be to count as blended
+MIXED = 1e-3            # by how much the share has to differ within a triangle for it to count as blended
+BESIDE = 0.08           # of the way over which weights pass: so far beyond it the limb is measured too
 # How weights pass from one bone to the next, over what was an even way from 0 to 1.
 FALLOFFS: dict[str, Callable[[Numbers], Numbers]] = {
     "linear": lambda share: share,
@@ -85,22 +86,21 @@ class Limb:
         return distances(self.mesh.positions.astype(np.float64), self.start, self.axis)
 
     @cached_property
-    def measured(self) -> NDArray[np.intp]:
-        """The vertices that belong to both bones alone, with a radius, in the order of their places."""
-        theirs = (self.held > WHOLE) & (self.radius > OFF_AXIS * self.length)
-        zone = self.along[theirs & (self.share > MIXED) & (self.share < 1.0 - MIXED)]
-        if not len(zone):
-            return np.zeros(0, np.intp)
-        reach = 0.08 * (zone.max() - zone.min()) + 1e-6
-        theirs &= (self.along >= zone.min() - reach) & (self.along <= zone.max() + reach)
-        chosen = np.nonzero(theirs)[0]
-        return np.asarray(chosen[np.argsort(self.along[chosen], kind="stable")])
+    def zone(self) -> tuple[float, float]:
+        """Between which places the weights pass from the upper to the lower bone; 0 to 1 where they nowhere do."""
+        triangles = self.mesh.triangles[(self.held > WHOLE)[self.mesh.triangles].all(axis=1)]
+        passing = triangles[np.ptp(self.share[triangles], axis=1) > MIXED] if len(triangles) else triangles
+        along = self.along[passing]
+        return (float(along.min()), float(along.max())) if len(passing) else (0.0, 1.0)
 
     @cached_property
-    def zone(self) -> tuple[float, float]:
-        """Between which places the weights pass from the upper to the lower bone; 0 to 1 where they nowhere mix."""
-        mixed = (self.held > WHOLE) & (self.share > MIXED) & (self.share < 1.0 - MIXED)
-        return (float(self.along[mixed].min()), float(self.along[mixed].max())) if mixed.any() else (0.0, 1.0)
+    def measured(self) -> NDArray[np.intp]:
+        """The vertices there that belong to both bones alone, with a radius, in the order of their places."""
+        low, high = self.zone
+        reach = BESIDE * (high - low)
+        theirs = (self.held > WHOLE) & (self.radius > OFF_AXIS * self.length)
+        chosen = np.nonzero(theirs & (self.along >= low - reach) & (self.along <= high + reach))[0]
+        return np.asarray(chosen[np.argsort(self.along[chosen], kind="stable")])
 
 
 def distances(points: Numbers, origin: Numbers, axis: Numbers) -> Numbers:

@@ -14,8 +14,7 @@ from viewer.kit.quaternion import Numbers
 
 BEFORE = "#9aa0a8"
 BOTTOM, HEIGHT = -0.965, 0.33       # of the plates, where picture and text stand side by side
-EM = 0.06                           # a standard letter height, in half heights of the picture
-LONGEST = 15.5 * 0.56               # the longest title, in ems
+LONGEST, LETTER = 15.5, 0.56        # letters of a title, as a rule at most, and how wide one is in ems
 LARGEST, SMALLEST = 1.08, 0.72      # of the text, in standard letter heights; below that it goes under the picture
 ROW = 1.42                          # from one line to the next, in ems
 PAD = 0.035
@@ -38,22 +37,25 @@ class Caption:
     drawings: tuple[tuple[Numbers, float, str], ...]
 
 
-def caption(column: int, columns: int, title: str, color: str, numbers: LimbNumbers | None,
-            outlines: tuple[Outline, Outline] | None, aspect: float) -> Caption:
-    """The caption in a ``column`` of so many, its cross section before and after in grey and in ``color``.
+def caption(middle: float, room: float, title: str, color: str, numbers: LimbNumbers | None,
+            outlines: tuple[Outline, Outline] | None, aspect: float, em: float) -> Caption:
+    """The caption around ``middle`` across, at most ``room`` wide, in half heights of a picture of that ``aspect``.
 
-    The text stands beside the cross section, or where there is no room for it, under it.
+    ``em`` is a standard letter height, in the same unit. The cross section is drawn before and after, in grey and
+    in ``color``. The text stands beside it, or where there is no room for it under it; where it could not be read
+    there is none.
     """
-    width = min(2.0 * aspect / columns - 0.05, 1.15)       # in half heights
+    longest = max(LONGEST, len(title)) * LETTER
+    width = min(room - 0.05, HEIGHT + 2.0 * PAD + LARGEST * longest * em)
     square = HEIGHT if outlines else 0.0
-    size = min(LARGEST, (width - square - 2.0 * PAD) / (LONGEST * EM))
+    size = min(LARGEST, (width - square - 2.0 * PAD) / (longest * em), HEIGHT / (3.7 * ROW * em))
     stacked = size < SMALLEST and outlines is not None
     if stacked:
-        square, size = min(width, 0.38), min(LARGEST, (width - 2.0 * PAD) / (LONGEST * EM))
-    row = ROW * EM * size
-    height = square + 3.0 * row + 0.5 * PAD if stacked else HEIGHT
-    middle, top = -1.0 + (2.0 * column + 1.0) / columns, BOTTOM + height
-    left = middle - 0.5 * width / aspect
+        square, size = min(width, 0.38), min(LARGEST, (width - 2.0 * PAD) / (longest * em))
+    legible = size > 0.35
+    row = ROW * em * max(size, 0.0)
+    height = square + (3.0 * row + 0.5 * PAD) * legible if stacked else HEIGHT
+    top, left = BOTTOM + height, middle - 0.5 * width / aspect
     text_left = left + (PAD if stacked or not square else square + 0.3 * PAD) / aspect
     first = top - square - 0.4 * row if stacked else top - 0.5 * height + 1.12 * row
     spacing = row if stacked else 1.12 * row
@@ -61,14 +63,14 @@ def caption(column: int, columns: int, title: str, color: str, numbers: LimbNumb
     lines += [Line(words, (text_left, first - place * spacing), 0.92 * size, color=QUIET)
               for place, words in enumerate(_words(numbers), 1)]
     center = (middle if stacked else left + 0.5 * square / aspect, top - 0.5 * square)
-    drawings = _drawn(outlines, center, 0.5 * square - 0.6 * PAD, aspect, color) if outlines else ()
-    return Caption((left, BOTTOM, left + width / aspect, top), tuple(lines), drawings)
+    drawings = _drawn(outlines, center, 0.5 * square - 0.9 * PAD, aspect, color) if outlines else ()
+    return Caption((left, BOTTOM, left + width / aspect, top), tuple(lines) if legible else (), drawings)
 
 
 def _words(numbers: LimbNumbers | None) -> Sequence[str]:
     if numbers is None:
         return ()
-    thinnest = f"thinnest {numbers.min_radius_ratio:.2f}" if math.isfinite(numbers.min_radius_ratio) else ""
+    thinnest = f"thinnest {numbers.thinnest:.2f}" if math.isfinite(numbers.thinnest) else ""
     volume = f"volume {100.0 * numbers.volume_ratio:.0f} %" if math.isfinite(numbers.volume_ratio) else ""
     return [words for words in (thinnest, volume) if words]
 

@@ -42,7 +42,8 @@ def thinnest_by_law(degrees: ArrayLike, twist_bones: int = 0) -> Numbers:
 class LimbNumbers:
     """Ratios of after to before, 1 where nothing changed; nan where a limb has no such part."""
 
-    min_radius_ratio: float
+    min_radius_ratio: float         # at the vertices
+    thinnest: float                 # anywhere on the edges between them: what one sees
     volume_ratio: float
     area_ratio: float
 
@@ -70,8 +71,40 @@ class LimbGauge:
         ratios = self.radius_ratios(posed[self.limb.measured], upper, self.limb.measured)
         size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
         (volume_before, area_before), (volume_now, area_now) = self._bound_extent, self._extent(posed)
-        return LimbNumbers(float(ratios.min()) if len(ratios) else np.nan, _ratio(volume_now / size**3, volume_before),
-                           _ratio(area_now / size**2, area_before))
+        return LimbNumbers(
+            float(ratios.min()) if len(ratios) else np.nan, self._thinnest(posed, upper, ratios),
+            _ratio(volume_now / size**3, volume_before), _ratio(area_now / size**2, area_before))
+
+    def _thinnest(self, posed: Vertices, upper: Numbers, ratios: Numbers) -> float:
+        """The smallest ratio on any edge between measured vertices: where it comes nearest to the axis."""
+        first, second = self._edges.T
+        if not len(first):
+            return float(ratios.min()) if len(ratios) else np.nan
+        now, bound = self._across(posed, upper), self._across(self.limb.mesh.positions.astype(np.float64), np.eye(4))
+        way = now[second] - now[first]
+        squared = np.einsum("ij,ij->i", way, way)
+        part = np.clip(np.divide(-np.einsum("ij,ij->i", now[first], way), squared, out=np.zeros(len(way)),
+                                 where=squared > 0.0), 0.0, 1.0)[:, None]
+        before = np.linalg.norm(bound[first] + part * (bound[second] - bound[first]), axis=1)
+        return float((np.linalg.norm(now[first] + part * way, axis=1) / np.maximum(before, 1e-30)).min())
+
+    def _across(self, places: Vertices, upper: Numbers) -> Numbers:
+        """``places`` (n, 3) as seen along the axis that ``upper`` (4, 4) has moved, in the limb's own size."""
+        limb = self.limb
+        size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
+        origin = upper[:3, :3] @ limb.start + upper[:3, 3]
+        frame = np.stack([upper[:3, :3] @ direction for direction in limb.across]) / size
+        return np.asarray((np.asarray(places, np.float64) - origin) @ frame.T / size)
+
+    @cached_property
+    def _edges(self) -> NDArray[np.intp]:
+        """The sides (e, 2) of triangles between measured vertices."""
+        theirs = np.zeros(len(self.limb.mesh.positions), np.bool_)
+        theirs[self.limb.measured] = True
+        triangles = self.limb.mesh.triangles
+        sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+        sides = np.unique(np.sort(sides[theirs[sides].all(axis=1)], axis=1), axis=0)
+        return sides.astype(np.intp)
 
     def along(self, ratios: Numbers, shares: Numbers) -> tuple[Numbers, Numbers, Numbers]:
         """Places on the limb from 0 to 1, the mean ratio and the mean share at each: of rings, else of slices."""
@@ -101,7 +134,7 @@ class LimbGauge:
         limb = self.limb
         triangles = welded(limb.mesh.positions.astype(np.float64), limb.mesh.triangles)
         low, high = limb.zone
-        slack = 0.02 * (high - low)
+        slack = 1e-4 * (high - low)
         inside = (limb.held > WHOLE) & (limb.along > low - slack) & (limb.along < high + slack)
         skin = triangles[inside[triangles].all(axis=1)]
         skin = skin if len(skin) else triangles

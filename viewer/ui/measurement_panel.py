@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from imgui_bundle import imgui, implot
+from numpy.typing import NDArray
 
 from viewer.ui import theme
 from viewer.ui.guard import show_failure
@@ -20,6 +21,7 @@ PLOT_EMS = 15.0
 PLOT_FLAGS: int = (implot.Flags_.no_menus | implot.Flags_.no_box_select | implot.Flags_.no_title
                    | implot.Flags_.no_mouse_text)
 AXIS_FLAGS: int = implot.AxisFlags_.auto_fit | implot.AxisFlags_.no_highlight
+MOST_DOTS = 45
 LEGEND_FLAGS: int = implot.LegendFlags_.outside | implot.LegendFlags_.horizontal | implot.LegendFlags_.no_buttons
 NOW_COLOR = imgui.ImVec4(*theme.rgb("#e8eaed", 0.7))
 SERIES_COLORS = [imgui.ImVec4(*color) for color in theme.SERIES]
@@ -74,11 +76,9 @@ class MeasurementPanel:
             return
         try:
             _axes(plot)
-            for index, (name, x, y) in enumerate(plot.series):
-                spec = implot.Spec()
-                spec.line_color = SERIES_COLORS[index % len(SERIES_COLORS)]
-                spec.line_weight = 0.12 * imgui.get_font_size()
-                implot.plot_line(name, x, y, spec)
+            numbered = list(enumerate(plot.series))
+            for index, (name, x, y) in sorted(numbered, key=lambda each: each[1][0] in plot.curve.dots):
+                _draw_series(name, x, y, SERIES_COLORS[index % len(SERIES_COLORS)], dots=name in plot.curve.dots)
             if plot.curve.now is not None:
                 spec = implot.Spec()
                 spec.line_color = NOW_COLOR
@@ -86,6 +86,20 @@ class MeasurementPanel:
                 implot.plot_inf_lines("now", np.array([plot.curve.now]), spec)
         finally:
             implot.end_plot()
+
+
+def _draw_series(name: str, x: NDArray[np.float64], y: NDArray[np.float64], color: imgui.ImVec4, *,
+                 dots: bool) -> None:
+    """A line, or some of its points, evenly chosen."""
+    spec, em = implot.Spec(), imgui.get_font_size()
+    spec.line_color, spec.line_weight = color, 0.12 * em
+    if not dots:
+        implot.plot_line(name, x, y, spec)
+        return
+    spec.marker, spec.marker_size = implot.Marker_.circle, 0.17 * em
+    spec.marker_fill_color = spec.marker_line_color = color
+    some = slice(None, None, 1 + len(x) // MOST_DOTS)
+    implot.plot_scatter(name, np.ascontiguousarray(x[some]), np.ascontiguousarray(y[some]), spec)
 
 
 def _axes(plot: Plot) -> None:
