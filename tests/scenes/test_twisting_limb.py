@@ -223,6 +223,7 @@ def test_weights_are_shown_as_colours(stage: Stage) -> None:
 
 def test_a_click_on_a_joint_chooses_its_bone(stage: Stage) -> None:
     """The nearest one, in any of the three limbs; beside all of them nothing happens."""
+    stage.resize((640, 360))
     stage.set(view="single", twist=0)
     stage.render()
     eye = stage.camera.eye

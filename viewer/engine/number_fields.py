@@ -112,7 +112,7 @@ class Interval(Number[tuple[float, float]]):
             ends = list(value)
         else:
             ends = [value, value]
-        if len(ends) != 2:
+        if len(ends) != 2 or (isinstance(value, str) and not all(_is_number(end) for end in ends)):
             raise self.refuse(value, f"is not a range such as {self.minimum:g}..{self.maximum:g}")
         low, high = (self.number(end, value) for end in ends)
         if low > high:
@@ -127,3 +127,11 @@ class Interval(Number[tuple[float, float]]):
 
     def uniform(self, value: tuple[float, float]) -> Uniform:
         return value
+
+
+def _is_number(text: object) -> bool:
+    try:
+        float(str(text))
+    except ValueError:
+        return False
+    return True
