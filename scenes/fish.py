@@ -44,7 +44,6 @@ LOOKED_AT = 500.0               # pixels: how long a fish is that is exported an
 SHADOW_PIXELS = 256.0           # half of the shadow map across
 SIGHT, FLOOR = 0.8, -0.40       # of the set for one fish: its radius, and how far below the fish its floor is, metres
 FINE_FROM = 70.0                # pixels of length from which scales, rays and irises show
-HALF_SIGHT = math.tan(math.radians(0.5 * Orbit().field_of_view))
 PARTS = ("body", "tail fin", "dorsal fin", "anal fin", "pectoral fins", "pelvic fins", "eyes")
 PART_COLORS = ("#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")     # okabe_ito 1 to 7
 
@@ -123,12 +122,15 @@ class Fish(Scene):
         pixels = self.pixels_of_nearest()
         detail = detail_of(self.params, pixels)
         fine = self.alone or (pixels > FINE_FROM and detail > 0)
-        if fine:
+        translucent = fine and not self.gpu.casting_shadows
+        if translucent:
             self.gpu.context.enable(moderngl.BLEND)     # fins let light through
         for number, model in enumerate(self.models):
             program = model.program(fine)
             self.water.light_up(program)
             model.draw(detail, fine, self.tell(program, number))
+        if translucent:
+            self.gpu.context.disable(moderngl.BLEND)
         if self.params.show_normals and self.needles:
             self.draw_needles(self.needles)
 
@@ -157,7 +159,8 @@ class Fish(Scene):
             return SHADOW_PIXELS / self.setting().radius
         places = np.zeros((1, 3)) if self.alone else self.flock.state[:, PLACE]
         nearest = max(float(np.linalg.norm(places - self.eye, axis=1).min()), 0.1)
-        return float(self.gpu.context.fbo.height / (2.0 * HALF_SIGHT * nearest))
+        shown = 2.0 * nearest * math.tan(math.radians(0.5 * self.camera.field_of_view))    # of the shorter side, metres
+        return float(self.gpu.context.fbo.height * min(1.0, self.aspect) / shown)
 
     @property
     def eye(self) -> NDArray[np.float64]:
@@ -203,6 +206,8 @@ class Fish(Scene):
 
     def remarks(self) -> Sequence[str]:
         found = list(self.swimming.remarks())
+        if self.params.mixed and self.alone:
+            found.append("A single fish is of one species: mixed has no effect")
         if not self.alone and np.linalg.norm(self.eye / self.flock.half_axes) < 1.0:
             found.append("The camera is within the school: scroll to see it from outside")
         return found

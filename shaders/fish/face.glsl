@@ -25,6 +25,7 @@ Face face_at(Spot spot) {
     float lips = inside * (1.0 - smoothstep(1.8, 3.6, abs(line)));
     float gap = inside * (1.0 - smoothstep(0.45, 0.95 + 0.7 * spot.pixel / MOUTH_GAPE, abs(line)));
     vec2 nostril = mix(EYE_PLACE, MOUTH_TIP, 0.52) + vec2(0.0, 0.62 * EYE_RADIUS);
-    gap = max(gap, 1.0 - smoothstep(0.05, 0.15 + spot.pixel / EYE_RADIUS, length((spot.rest.xy - nostril) * vec2(0.8, 1.3) / EYE_RADIUS)));
+    float away = length((spot.rest.xy - nostril) * vec2(0.8, 1.3) / EYE_RADIUS);
+    gap = max(gap, 1.0 - smoothstep(0.05, 0.15 + spot.pixel / EYE_RADIUS, away));
     return Face(bare, crease, lips, gap);
 }

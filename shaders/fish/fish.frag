@@ -1,13 +1,11 @@
 #version 330 core
 // The skin of the fish: pattern, scales, face, fins and eyes, wet, in the light under water.
-// From generated/drawn.glsl: COLOURING, what the colours tell, and FINE, whether scales and rays are large enough to
-// show. What a species' file leaves out, such as eyes of its own, stands here.
+// From generated/drawn.glsl: BODY to EYE, the parts of a fish; COLOURING, what the colours tell; and FINE, whether
+// scales and rays are large enough to show. What a species' file leaves out, such as eyes of its own, stands here.
 #include "lib/underwater.glsl"
 #include "lib/color.glsl"
 #include "particles/random.glsl"
 #include "generated/drawn.glsl"
-
-const int BODY = 0, TAIL = 1, DORSAL = 2, ANAL = 3, PECTORAL = 4, PELVIC = 5, EYE = 6;
 
 uniform int u_school;
 uniform int u_pattern_seed;
@@ -52,12 +50,6 @@ Spot spot_here() {
     return Spot(v_rest, 0.5 - v_rest.x + slant, back, vec2(v_lattice.x, around), pixel);
 }
 
-// The normal where the skin rises by a slope along the surface towards the tail, and across that.
-vec3 tilted(vec3 normal, vec2 slope) {
-    vec3 along = normalize(normal * dot(v_ahead, normal) - v_ahead);
-    return normalize(normal - slope.x * along - slope.y * cross(along, normal));
-}
-
 Finish body_finish(Spot spot, vec3 color, inout vec3 normal, vec3 to_eye) {
     Skin skin = body_skin(spot, color);
     if (!FINE)
@@ -73,7 +65,7 @@ Finish body_finish(Spot spot, vec3 color, inout vec3 normal, vec3 to_eye) {
     skin.color = mix(skin.color, vec3(0.02, 0.008, 0.008), face.gap);
 
     float facing = abs(dot(normal, to_eye));
-    normal = tilted(normal, 0.34 * shown * scale.slope);
+    normal = tilted(normal, v_ahead, 0.34 * shown * scale.slope);
     float thickness = 165.0 + 45.0 * chance * shown + 40.0 * spot.back;       // nanometres
     vec3 film = film_color(thickness, facing);
     float strength = u_iridescence * skin.film * (1.0 - face.gap);

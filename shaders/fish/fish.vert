@@ -42,8 +42,10 @@ vec4 telling(FishPose pose) {
         return vec4(swing_of(pose) / u_swing_scale);
     if (COLOURING == WEIGHTS) {
         vec3 color = vec3(0.0);
-        for (int number = 0; number < 4; number++)
-            color += in_weights[number] * (in_joints[number] == 0u ? vec3(0.30) : okabe_ito(1 + int(in_joints[number] - 1u) % 7));
+        for (int number = 0; number < 4; number++) {
+            int joint = int(in_joints[number]);
+            color += in_weights[number] * (joint == 0 ? vec3(0.30) : okabe_ito(1 + (joint - 1) % 7));
+        }
         return vec4(color, 0.0);
     }
     return vec4(0.0);

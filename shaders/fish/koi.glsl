@@ -6,7 +6,8 @@ const vec3 IRIS = vec3(0.30, 0.24, 0.16);
 const vec3 INK = vec3(0.012, 0.013, 0.018);
 const float FIN_SLANT = 0.0;
 
-// Noise whose own domain is bent by noise, so that the edges of clouds curl: how far inside the red ones, and the black.
+// Noise whose own domain is bent by noise, so that the edges of clouds curl: how far inside the red ones, and the
+// black.
 vec2 clouds(vec3 rest) {
     vec3 start = vec3(0.0, 0.0, 1.37 * pattern_start());
     if (!FINE) {        // too small for curls

@@ -27,6 +27,6 @@ void main() {
         along = pose.turn * normalize(out_of_body(normal, body, u_swim_yaw * sin(pose.phase)));
     }
     v_normal = needle_side(in_corner, along);
-    v_position = needle_corner(in_corner, root, along, u_needle_length);
+    v_position = needle_corner(in_corner, root, along, pose.size * u_needle_length);
     gl_Position = u_frame.view_projection * vec4(v_position, 1.0);
 }

@@ -1,5 +1,7 @@
 // Scales in staggered rows, like tiles on a roof: each lies over the front of the one behind it.
 // Scale scale_at(vec2 place): the scale on top at a place, given in rows from the nose and in columns around.
+// vec3 tilted(vec3 normal, vec3 ahead, vec2 slope): the normal where the skin of a fish that swims ahead rises by a
+// slope along the surface towards the tail, and across that.
 
 uniform int u_columns;            // scales around the body
 
@@ -28,4 +30,10 @@ Scale scale_at(vec2 place) {
         }
     }
     return scale;
+}
+
+vec3 tilted(vec3 normal, vec3 ahead, vec2 slope) {
+    vec3 along = normal * dot(ahead, normal) - ahead;
+    along /= max(length(along), 1e-6);      // at the tip of the nose no way along the surface leads to the tail
+    return normalize(normal - slope.x * along - slope.y * cross(along, normal));
 }

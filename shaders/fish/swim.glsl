@@ -80,7 +80,7 @@ vec2 rotated(vec2 v, float angle) {
 // From the frame that goes along with a place of the body (ahead, up, right) to the fish's own.
 vec3 out_of_body(vec3 v, BodyPlace body, float yaw) {
     vec2 across = rotated(v.yz, body.roll);
-    vec2 level = vec2(v.x * body.forward.x - across.y * body.forward.y, v.x * body.forward.y + across.y * body.forward.x);
+    vec2 level = v.x * body.forward + across.y * vec2(-body.forward.y, body.forward.x);
     level = rotated(level, -yaw);
     return vec3(level.x, across.x, level.y);
 }

@@ -16,7 +16,7 @@ struct Finish {
 };
 
 const vec3 SUN = vec3(3.3, 3.25, 2.95);
-const float SNELL = 0.66;           // how steeply up one has to look to see the sky through still water: cos 48.6 degrees
+const float SNELL = 0.66;           // how steeply up one looks to see the sky through still water: cos 48.6 degrees
 const vec3 FROM_SAND = vec3(0.42, 0.42, 0.34);
 
 vec3 water_color(vec3 direction) {
@@ -64,6 +64,7 @@ vec3 underwater_light(vec3 position, vec3 normal, Finish finish) {
     float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing;
     vec3 way = reflect(-to_eye, normal);
     float window = smoothstep(SNELL - finish.roughness, SNELL + finish.roughness, way.y);
-    light += min(finish.mirror * fresnel, vec3(1.0)) * (0.8 * water_color(way) + 1.6 * window * u_frame.backdrop_high.rgb);
+    vec3 mirrored_water = 0.8 * water_color(way) + 1.6 * window * u_frame.backdrop_high.rgb;
+    light += min(finish.mirror * fresnel, vec3(1.0)) * mirrored_water;
     return light;
 }

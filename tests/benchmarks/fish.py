@@ -45,7 +45,8 @@ def tree_pairs(flock: Any) -> Pairs:
     """Who sees whom, as SciPy's tree finds it."""
     from scipy.spatial import cKDTree
 
-    return cKDTree(flock.state[:, PLACE]).query_pairs(flock.rules.perception, output_type="ndarray")  # type: ignore[no-any-return]
+    pairs: Pairs = cKDTree(flock.state[:, PLACE]).query_pairs(flock.rules.perception, output_type="ndarray")
+    return pairs
 
 
 def steps_in_turn(flock: Any, rounds: int) -> tuple[list[float], list[float]]:

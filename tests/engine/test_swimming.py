@@ -121,14 +121,45 @@ def test_another_frequency_changes_the_pace_and_never_jumps() -> None:
 
 
 def test_the_beat_is_exact_after_hours(gpu: Gpu) -> None:
-    """The shader gets the phase within one beat, from a sum in double precision."""
+    """Ten seconds on from five hours' worth of beats, the shader gets the phase that an exact sum has."""
     params = Parameters({"tail_beat_hz": 1.5})
     swimming, program = Swimming(params), gpu.program("probe.vert")
-    for _ in range(100_000):
+    start = swimming.phase = FULL_TURN * 1.5 * 5 * 3600.0
+    for _ in range(600):
         swimming.advance(STEP)
+    exact = math.fsum([start, *[FULL_TURN * 1.5 * STEP] * 600])
     swimming.tell(program)
-    assert math.remainder(swimming.phase - FULL_TURN * 1.5 * STEP * 100_000, FULL_TURN) == pytest.approx(0.0, abs=1e-6)
-    assert 0.0 <= program._own_uniforms["u_phase"] < FULL_TURN
+    told = program._own_uniforms["u_phase"]
+    assert 0.0 <= told < FULL_TURN
+    assert math.remainder(told - exact, FULL_TURN) == pytest.approx(0.0, abs=1e-6)
+
+
+TILTED = """#version 330 core
+float pattern_start() { return 0.0; }
+#include "particles/random.glsl"
+#include "fish/scales.glsl"
+
+in vec3 in_normal;
+in vec3 in_ahead;
+
+out vec3 v_normal;
+
+void main() {
+    v_normal = tilted(in_normal, in_ahead, vec2(0.3, -0.2));
+    gl_Position = vec4(0.0);
+}
+"""
+
+
+def test_scales_tilt_the_normal_wherever_it_points(gpu: Gpu, tmp_path: Path) -> None:
+    """By their slopes; at the tip of the nose and of the tail, where it is the heading, not at all."""
+    (tmp_path / "tilted.vert").write_text(TILTED)
+    normals, ahead = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0]], "f4"), np.tile(np.float32([1, 0, 0]), (3, 1))
+    array = gpu.vertex_array(gpu.program("tilted.vert"), [
+        (gpu.buffer(normals), "3f", "in_normal"), (gpu.buffer(ahead), "3f", "in_ahead")])
+    steep = np.array([0.3, 1.0, 0.2 * -1.0])
+    wanted = [[1, 0, 0], [-1, 0, 0], steep / np.linalg.norm(steep)]
+    np.testing.assert_allclose(array.capture({"v_normal": 3}, 3)["v_normal"], wanted, atol=1e-6)
 
 
 def test_going_back_to_a_moment() -> None:

@@ -22,6 +22,8 @@ from viewer.kit.fish import (
     fish,
     fish_mesh,
     fish_pieces,
+    fish_rig,
+    fish_skeleton,
 )
 from viewer.kit.fish_pieces import Piece
 
@@ -166,6 +168,16 @@ def test_a_mesh_for_all_who_want_shared_vertices() -> None:
     assert whole.is_watertight and whole.is_winding_consistent
     assert whole.euler_number == 2 * len(fish_pieces("koi"))
     assert whole.volume == pytest.approx(sum(solid(piece).volume for piece in fish_pieces("koi").values()), rel=1e-5)
+
+
+def test_what_is_shared_by_all_cannot_be_changed() -> None:
+    """Neither a mesh without its seams, nor joints and how they are bound."""
+    rig = fish_rig("koi", 0)
+    skeleton = rig.skeleton
+    assert fish_skeleton("koi") is skeleton
+    assert not any(array.flags.writeable for array in (
+        *fish_mesh("koi", 0), rig.bones, rig.inverse_bind, skeleton.parents, skeleton.translations,
+        skeleton.rotations, skeleton.scales))
 
 
 def test_meshes_are_shared_and_cannot_be_changed() -> None:

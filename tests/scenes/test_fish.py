@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import moderngl
 import numpy as np
 import pytest
 import trimesh
@@ -16,15 +19,17 @@ from numpy.typing import NDArray
 import viewer
 from viewer import cli
 from viewer.engine.catalog import Catalog
+from viewer.engine.fish import look, model
+from viewer.engine.fish.look import FishLookParameters
 from viewer.engine.presets import presets_for
 from viewer.engine.program import VertexArray
-from viewer.kit.fish import SPECIES, fish
+from viewer.engine.underwater import WaterParameters
+from viewer.kit.fish import BODY, EYE, PECTORAL, SPECIES, fish, fish_pieces
 from viewer.kit.fish_body import body_surface
 
 Numbers = NDArray[np.float64]
 pytestmark = pytest.mark.usefixtures("context")
 PRESETS = {preset.name: preset for preset in presets_for(Catalog().find("fish"))}
-BODY, PECTORAL = 0, 4
 SMALL = {"size": (96, 54), "samples": 0}
 
 
@@ -64,9 +69,9 @@ def length_of(line: Numbers) -> float:
 
 
 def beat(params: dict[str, object], frames: int) -> Iterator[dict[str, NDArray[Any]]]:
-    """The exported geometry of frames 0 to ``frames`` - 1."""
+    """The exported geometry of every fourth of so many frames."""
     with stage(detail="middling", **params) as swimming:
-        for frame in range(frames):
+        for frame in range(0, frames, 4):
             swimming.seek(frame)
             yield swimming.geometry()
 
@@ -91,13 +96,13 @@ def test_the_body_keeps_its_length(params: dict[str, object]) -> None:
     assert np.abs(np.array(lengths) / along - 1.0).max() < 0.02
 
 
-@pytest.mark.parametrize(("hertz", "wavelength"), [(1.5, 1.0), (3.0, 0.75), (2.0, 1.4)])
+@pytest.mark.parametrize(("hertz", "wavelength"), [(1.5, 1.0), (3.0, 0.75), (2.5, 1.4)])
 def test_the_wave_runs_as_fast_as_frequency_times_wavelength(hertz: float, wavelength: float) -> None:
     """By when each place of the body swings, in the frames of one beat."""
     frames = round(60 / hertz)
     lines = np.array([line_of(geometry) for geometry in beat(
         {"tail_beat_hz": hertz, "wavelength": wavelength, "twist": False, "stiffness": 0.2}, frames)])
-    swing = np.exp(-2j * np.pi * np.arange(frames) / frames) @ lines[:, :, 2]
+    swing = np.exp(-2j * np.pi * np.arange(0, frames, 4) / frames) @ lines[:, :, 2]
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(lines[0], axis=0), axis=1))])
     back = along > 0.3
     delay = -np.unwrap(np.angle(swing))[back] / (2.0 * np.pi * hertz)       # seconds after the nose
@@ -196,13 +201,13 @@ def test_another_frequency_changes_the_pace_and_not_the_place() -> None:
 def test_seeking_is_playing(params: dict[str, object]) -> None:
     """To and fro, the pictures are those of playing from the beginning."""
     with viewer.headless("fish", **SMALL, params=params) as one:
-        for _ in range(50):
+        for _ in range(20):
             one.step()
         played, geometry = one.pixels(), one.geometry()
-        one.seek(70)
+        one.seek(30)
         one.pixels()
-        one.seek(13)
-        one.seek(50)
+        one.seek(5)
+        one.seek(20)
         assert np.array_equal(one.pixels(), played)
         assert all(np.array_equal(values, geometry[name]) for name, values in one.geometry().items())
 
@@ -210,15 +215,36 @@ def test_seeking_is_playing(params: dict[str, object]) -> None:
 # Fins
 
 def test_a_twisted_fin_collapses_and_is_cured() -> None:
-    """Its skin has less area where matrices are blended, and about its own where motions are."""
+    """Its skin has less area where matrices are blended, and no less than its own where motions are."""
     area = {}
-    for method, twist in (("linear", 0.0), ("linear", 180.0), ("dual_quaternion", 180.0)):
+    for method, twist in product(("linear", "dual_quaternion"), (0.0, 180.0)):
         with stage(fin_twist=twist, fin_method=method, fin_stroke=0.0, fin_feather=0.0) as swimming:
             geometry = swimming.geometry()
         fin = geometry["triangles"][(geometry["parts"][geometry["triangles"]] == PECTORAL).all(axis=1)]
         area[method, twist] = trimesh.Trimesh(geometry["vertices"], fin, process=False).area
     assert area["linear", 180.0] < 0.9 * area["linear", 0.0]
-    assert area["dual_quaternion", 180.0] > 1.1 * area["linear", 180.0]
+    assert area["dual_quaternion", 180.0] > 0.99 * area["dual_quaternion", 0.0]
+
+
+def test_the_way_of_blending_may_change_before_the_first_picture() -> None:
+    """And after it: the fins stand as if it had been so from the start."""
+    with stage(fin_twist=90.0, fin_method="dual_quaternion") as one:
+        wanted = one.geometry()["vertices"]
+    with stage(fin_twist=90.0) as one:
+        one.set(fin_method="dual_quaternion")
+        assert np.array_equal(one.geometry()["vertices"], wanted)
+        one.set(fin_method="linear")
+        assert np.abs(one.geometry()["vertices"] - wanted).max() > 1e-3
+        one.set(fin_method="dual_quaternion")
+        assert np.array_equal(one.geometry()["vertices"], wanted)
+
+
+def test_only_fins_have_rays() -> None:
+    """Neither the body, nor what feels and sees."""
+    for species in SPECIES:
+        parts, found = fish(species, 3).parts, look.rays(species, 3)
+        assert found.shape == parts.shape
+        assert np.array_equal(found > 0, (parts != BODY) & (parts != EYE))
 
 
 # Pictures
@@ -231,10 +257,10 @@ def default_picture(only_context: object) -> NDArray[np.uint8]:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_opens_and_is_another_picture(name: str, default_picture: NDArray[np.uint8]) -> None:
-    """With a title, a sentence, and far from the default."""
+    """With a title, a sentence, and far from the default; a school at once, others in mid-swim."""
     preset = PRESETS[name]
     assert preset.title and preset.description.endswith(".")
-    picture = viewer.render("fish", 12, **SMALL, preset=name)
+    picture = viewer.render("fish", 2 if "school" in preset.values else 12, **SMALL, preset=name)
     assert np.abs(picture.astype(int) - default_picture).max(axis=2).mean() > 3.0
 
 
@@ -244,16 +270,42 @@ def test_the_presets_that_were_asked_for_are_there() -> None:
             "fin-collapse", "fin-cure", "turning", "needles"} <= set(PRESETS)
 
 
-@pytest.mark.parametrize(("name", "value"), [
-    ("pattern_seed", 5), ("scale_size", 2.5), ("iridescence", 0.0), ("recolour", True), ("colouring", "normals"),
-    ("colouring", "parts"), ("colouring", "weights"), ("colouring", "swing"), ("show_midline", True),
-    ("show_normals", True), ("water", "ocean"), ("seabed", False), ("caustics", 0.0), ("detail", "far"),
-    ("fin_spread", 40.0), ("turn", 40.0)])
-def test_every_parameter_shows(name: str, value: object) -> None:
-    """A change of what one sees changes the picture."""
-    one, other = (viewer.render("fish", 5, size=(160, 90), samples=0, params={"species": "koi", **params})
-                  for params in ({}, {name: value}))
-    assert (np.abs(one.astype(int) - other).max(axis=2) > 3).sum() > 40
+NEEDLES, OWN_COLORS = {"show_normals": True}, {"recolour": True}
+CHANGES: list[tuple[str, object, dict[str, object]]] = [
+    ("species", "tuna", {}), ("detail", "far", {}), ("mixed", True, {"school": 12}), ("pattern_seed", 5, {}),
+    ("scale_size", 2.5, {}), ("iridescence", 0.0, {}), ("recolour", True, {}), ("ground_color", "#20c040", OWN_COLORS),
+    ("pattern_color", "#20c040", OWN_COLORS), ("colouring", "normals", {}), ("colouring", "parts", {}),
+    ("colouring", "weights", {}), ("colouring", "swing", {}), ("show_midline", True, {}), ("show_normals", True, {}),
+    ("needles", 100, NEEDLES), ("needle_length", 0.2, NEEDLES), ("water", "ocean", {}), ("seabed", False, {}),
+    ("caustics", 0.0, {}), ("motes", False, {})]
+
+
+@pytest.fixture(scope="module")
+def picture_of(only_context: object) -> Callable[..., NDArray[np.int64]]:
+    """Makes pictures of a koi, each once."""
+    made: dict[object, NDArray[np.int64]] = {}
+
+    def make(**params: object) -> NDArray[np.int64]:
+        key = tuple(params.items())
+        if key not in made:
+            made[key] = viewer.render("fish", 5, size=(160, 90), samples=0,
+                                      params={"species": "koi", **params}).astype(np.int64)
+        return made[key]
+
+    return make
+
+
+@pytest.mark.parametrize(("name", "value", "params"), CHANGES)
+def test_every_parameter_of_the_look_shows(name: str, value: object, params: dict[str, object],
+                                           picture_of: Callable[..., NDArray[np.int64]]) -> None:
+    """A change of it changes the picture."""
+    changed = np.abs(picture_of(**params) - picture_of(**params, **{name: value})).max(axis=2)
+    assert (changed > 0).sum() > 4
+
+
+def test_every_parameter_of_the_look_is_tried() -> None:
+    """So that none is declared in vain."""
+    assert {name for name, _, _ in CHANGES} == {*FishLookParameters.declared, *WaterParameters.declared}
 
 
 @pytest.mark.parametrize("species", list(SPECIES))
@@ -285,6 +337,94 @@ def test_lines_of_light_take_as_much_as_they_give() -> None:
                 assert steps[-1] < 1.5 * max(steps[-2], steps[0])       # as much over the seam as beside it
 
 
+def test_light_falls_once_for_each_moment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However often one asks; another frame has another light, and the one before the same again."""
+    falls: list[str] = []
+    render = VertexArray.render
+
+    def noted(self: VertexArray, **options: int) -> None:
+        falls.extend([self.program.name] if "light_net" in self.program.name else [])
+        render(self, **options)
+
+    with stage() as one:
+        one.seek(3)
+        first = one.pixels()
+        monkeypatch.setattr(VertexArray, "render", noted)
+        one.geometry()
+        one.measure()
+        assert np.array_equal(one.pixels(), first)
+        assert not falls
+        one.seek(40)
+        one.pixels()
+        assert len(falls) == 2
+        one.seek(3)
+        assert np.array_equal(one.pixels(), first)
+
+
+def test_what_is_drawn_after_the_fish_is_drawn_as_ever(context: moderngl.Context) -> None:
+    """Not blended; and where one asks for that, by its cover and not added."""
+    clear = context.program("""#version 330 core
+        void main() { gl_Position = vec4(4 * (gl_VertexID % 2) - 1, 4 * (gl_VertexID / 2) - 1, 0.0, 1.0); }""",
+                            "#version 330 core\nout vec4 color; void main() { color = vec4(0.5, 0.5, 0.5, 0.0); }")
+    screen = context.vertex_array(clear, [])
+    with stage() as one:
+        one.pixels()
+        target = one.scene.gpu.framebuffer([one.scene.gpu.texture((1, 1), 4)])
+        target.use()
+        one.scene.draw()
+        target.clear()
+        screen.render(vertices=3)
+        assert target.read(components=3)[0] in (127, 128)
+        one.seek(9)
+        one.scene.prepare()
+        context.enable(moderngl.BLEND)
+        target.use()
+        target.clear()
+        screen.render(vertices=3)
+        assert target.read(components=3)[0] == 0
+        context.disable(moderngl.BLEND)
+    screen.release()
+    clear.release()
+
+
+def test_a_fish_is_as_fine_as_it_is_large_in_the_picture() -> None:
+    """As long as a metre is at its distance, in pictures of any shape."""
+    for size in ((160, 90), (90, 160)):
+        with viewer.headless("fish", size=size, samples=0) as one:
+            one.pixels()
+            one.picture.use()
+            away = np.linalg.norm(one.camera.eye)
+            metre = 0.5 * size[1] * one.camera.projection(size[0] / size[1])[1, 1] / away
+            assert one.scene.pixels_of_nearest() == pytest.approx(metre, rel=1e-6)
+
+
+def test_no_finer_fish_is_built_than_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor a coarser one."""
+    asked: list[int] = []
+    monkeypatch.setattr(model, "fish", lambda species, detail: asked.append(detail) or fish(species, detail))
+    assert model.detail_of(SimpleNamespace(detail="fine", species="koi", school=1), 0.0) == 3
+    assert model.detail_of(SimpleNamespace(detail="by_size", species="koi", school=20), 200.0) == 2
+    assert asked == [3, 2]
+
+
+def test_a_far_fish_s_shadow_is_that_of_its_body() -> None:
+    """Of the triangles that come first none belongs to what follows, such as barbels."""
+    for species, detail in product(SPECIES, range(3)):
+        body = fish_pieces(species, detail)["body"]
+        count = model.body_triangles(species, detail)
+        triangles = fish(species, detail).triangles
+        assert triangles[:count].max() < len(body.positions) <= triangles[count:].min()
+
+
+def test_needles_are_as_long_as_the_fish_s_size_has_them() -> None:
+    """In a school of small ones too."""
+    with stage(school=2, fish_size=(0.4, 0.401), show_normals=True, needle_length=0.2) as one:
+        one.pixels()
+        corners = one.scene.needles.capture({"v_position": 3}, 12)["v_position"].reshape(4, 3, 3)
+    root, tip = corners[:, 0].mean(axis=0), corners[0, 2]
+    assert np.linalg.norm(tip - root) == pytest.approx(0.4 * 0.2, rel=0.01)
+
+
 # A school
 
 def drawn_fish(monkeypatch: pytest.MonkeyPatch, **params: object) -> Counter[int]:
@@ -292,10 +432,10 @@ def drawn_fish(monkeypatch: pytest.MonkeyPatch, **params: object) -> Counter[int
     calls: Counter[int] = Counter()
     render = VertexArray.render
 
-    def counted(self: VertexArray, *, vertices: int = -1, instances: int = -1) -> None:
+    def counted(self: VertexArray, *, instances: int = -1, **options: int) -> None:
         if self.program.name == "fish/fish.frag" and not self.program.gpu.casting_shadows:
             calls[instances] += 1
-        render(self, vertices=vertices, instances=instances)
+        render(self, instances=instances, **options)
 
     monkeypatch.setattr(VertexArray, "render", counted)
     viewer.render("fish", **SMALL, params=params)
@@ -330,6 +470,14 @@ def test_many_fish_are_cut_coarsely() -> None:
         assert one.measure()["vertices"] < 250
     with stage(detail="finest") as one:
         assert one.measure()["vertices"] > 40_000
+
+
+def test_what_a_single_fish_cannot_be_is_said() -> None:
+    """Of all species at once."""
+    with stage(mixed=True) as one:
+        assert any("mixed" in remark for remark in one.remarks())
+    with stage(mixed=True, school=4) as one:
+        assert not any("mixed" in remark for remark in one.remarks())
 
 
 # Bad values

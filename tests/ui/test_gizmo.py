@@ -72,13 +72,19 @@ MakeDial = Callable[..., "Hand"]
 
 @pytest.fixture
 def make_dial(make_hand: Callable[..., Hand], pack: Path) -> MakeDial:
-    """Opens a scene with a handle; lines of Python say what it offers, how it follows and where the lens points."""
+    """Opens a scene with a handle; lines of Python say what it offers, how it follows and where the lens points.
+
+    Without ``panels`` the window is smaller, and all picture.
+    """
 
     def make(offer: str = OFFER, follow: str = FOLLOW, middle: str = "0.0, 0.0",
-             size: tuple[int, int] = (1024, 768), **options: bool) -> Hand:
+             panels: bool = False, **options: bool) -> Hand:
         source = SCENE.replace("OFFER", offer).replace("FOLLOW", follow).replace("MIDDLE", middle)
         (pack / "scenes" / "dial.py").write_text(source)
-        return make_hand(size, scene="dial", samples=0, **options)
+        hand = make_hand((1024, 768) if panels else (640, 480), scene="dial", samples=0, **options)
+        hand.bench.view.panels = panels
+        hand.frames()
+        return hand
 
     return make
 
@@ -162,7 +168,7 @@ def test_a_ring_turns_by_as_much_as_the_hand_goes_round(make_dial: MakeDial, end
 def test_a_ring_is_where_the_picture_has_it(make_dial: MakeDial, units: tuple[int, int], ratio: float, dpi: float,
                                             shown: bool) -> None:
     """At any scale of the text, on screens with several pixels to a unit, and without panels."""
-    hand = make_dial(middle="0.2, 0.1")
+    hand = make_dial(middle="0.2, 0.1", panels=True)
     hand.bench.view.panels = shown
     hand.surface = dataclasses.replace(hand.surface, size=units, pixel_ratio=(ratio, ratio), dpi=dpi)
     hand.frames(3)
@@ -225,7 +231,7 @@ def test_a_press_alone_changes_nothing(make_dial: MakeDial) -> None:
         press(hand, place)
         hand.frames(3)
         hand.button(False)
-        hand.frames(30)
+        hand.frames(1, seconds=0.5)
     assert values(hand) == (0.0, 0.0, 0)
     assert not hand.bench.history.can_undo
 
@@ -277,7 +283,7 @@ def test_beside_a_handle_everything_is_as_without(make_dial: MakeDial) -> None:
     hand.drag((x, box.y + 30.0), (0.0, 2.0 * (y - box.y - 30.0)))
     assert camera.pitch != camera.start.pitch
     assert values(hand) == (0.0, 0.0, 0)
-    hand.frames(30)
+    hand.frames(1, seconds=0.5)
     hand.click((box.x + 30.0, box.y + box.height - 30.0))
     assert hand.value("clicks") == 1
     hand.bench.session.io.add_mouse_wheel_event(0.0, 1.0)
@@ -297,7 +303,7 @@ def test_where_nothing_is_offered_the_mouse_is_the_camera_s(make_dial: MakeDial,
 
 def test_a_hand_that_lets_go_over_a_panel_has_let_go(make_dial: MakeDial) -> None:
     """It turns on over panels; after that the mouse may come back and nothing follows it."""
-    hand = make_dial()
+    hand = make_dial(panels=True)
     start = on_ring(hand, 60.0)
     press(hand, start)
     hand.point((60.0, 650.0))
@@ -466,7 +472,7 @@ def test_a_handle_is_drawn_over_the_picture_and_under_what_lies_on_it(make_dial:
     """One that stands in the picture's upper corner reaches neither out of it nor over a message there."""
     windows = []
     for offer in (OFFER, "return None"):
-        hand = make_dial(offer, steady=True)
+        hand = make_dial(offer, steady=True, panels=True)
         box = hand.bench.layout.picture
         hand.bench.tell(ValueError("not here"))
         x, y = on_screen(hand, (0.0, 0.3, 0.0))

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from viewer.engine.declarations import choice, slider, toggle
 from viewer.engine.gpu import Gpu
 from viewer.engine.params import Parameters
 from viewer.engine.program import Program
+from viewer.kit.mesh import Triangles, quads_to_triangles
 
 GROUP = "Water"
 WATERS: Mapping[str, tuple[str, str]] = {      # below and above, as Studio.backdrop takes them
@@ -20,7 +21,7 @@ WATERS: Mapping[str, tuple[str, str]] = {      # below and above, as Studio.back
 LIGHT_UNIT, SOFT_LIGHT_UNIT = 8, 9
 BEND = 0.034            # how far aside a ray lands for each unit of the waves' slope, in tiles: to sharp lines
 SOFT_BEND = 0.4 * BEND  # and well before they are
-MARGIN = 0.14           # of the net of light around its tile: as far as a ray is bent at most
+MARGIN = 9.0 / 64.0     # of the net of light around its tile: as far as a ray is bent at most
 MOTES = 140
 
 
@@ -38,35 +39,40 @@ class WaterParameters(Parameters):
 class LightNet:
     """What the waves make of the sun's light on a tile of floor: a texture that repeats without a seam.
 
-    A net of ``knots`` by ``knots`` rays is bent by the waves and drawn where it lands, each mesh as bright as it
-    has become small: Evan Wallace, "Rendering Realtime Caustics in WebGL", 2016.
+    A net of rays, ``squares`` by ``squares`` of it to a tile and a margin, is bent by the waves and drawn where it
+    lands, each mesh as bright as it has become small: Evan Wallace, "Rendering Realtime Caustics in WebGL", 2016.
     """
 
-    def __init__(self, gpu: Gpu, pixels: int, knots: int, bend: float) -> None:
+    def __init__(self, gpu: Gpu, pixels: int, squares: int, bend: float) -> None:
         self.gpu = gpu
         (self._sharp, self._landing), (self.texture, self._softened) = (self._target(pixels) for _ in range(2))
         self._program = gpu.program("underwater/light_net.vert", "underwater/light_net.frag")
+        knots = 1 + round(squares * (1.0 + 2.0 * MARGIN))
         self._program["u_knots"], self._program["u_margin"] = knots, MARGIN
         self._program["u_bend"], self._program["u_pixel"] = bend, 1.0 / pixels
         self._net = gpu.vertex_array(self._program, [], gpu.buffer(net_triangles(knots), label="net of light"))
         self._disc = gpu.vertex_array(gpu.program("studio/screen.vert", "underwater/sun_disc.frag"))
+        self._shows: tuple[float, int, int] | None = None
 
     def draw(self, time: float) -> None:
-        """Let the light fall as it does at ``time``, in seconds."""
+        """Let the light fall as it does at ``time``, in seconds, unless it does so already."""
+        shows = time, self._program.generation, self._disc.program.generation
+        if shows == self._shows:
+            return
         context = self.gpu.context
         drawn_into = context.fbo
         self._program["u_time"] = time
+        context.enable_only(moderngl.NOTHING)
         self._landing.use()
         self._landing.clear()
-        context.enable_only(moderngl.BLEND)
-        context.blend_func = moderngl.ONE, moderngl.ONE
-        self._net.render()
-        context.enable_only(moderngl.NOTHING)
+        with adding_light(context):
+            self._net.render()
         self._softened.use()
         self._sharp.use(LIGHT_UNIT)
         self._disc.program["u_light"] = LIGHT_UNIT
         self._disc.render(vertices=3)
         drawn_into.use()
+        self._shows = shows
 
     def _target(self, pixels: int) -> tuple[moderngl.Texture, moderngl.Framebuffer]:
         texture = self.gpu.texture((pixels, pixels), 1, dtype="f2", label="caustics")
@@ -79,8 +85,8 @@ class Underwater:
 
     def __init__(self, gpu: Gpu, params: Any) -> None:
         self.gpu, self.params = gpu, params
-        self._light = LightNet(gpu, 256, 112, BEND)
-        self._soft_light = LightNet(gpu, 64, 48, SOFT_BEND)
+        self._light = LightNet(gpu, 256, 64, BEND)
+        self._soft_light = LightNet(gpu, 64, 32, SOFT_BEND)
         self._seabed = gpu.vertex_array(gpu.program("underwater/seabed.vert", "underwater/seabed.frag"),
                                         mode=moderngl.TRIANGLE_FAN, closed=True)
         self._water = gpu.vertex_array(gpu.program("underwater/water.vert", "underwater/water.frag"))
@@ -112,20 +118,27 @@ class Underwater:
         """Draw the dust, in ``Scene.draw_over``; it only adds light."""
         if not self.params.motes:
             return
-        context = self.gpu.context
-        drawn_into = context.fbo
-        context.enable(moderngl.BLEND)
-        context.blend_func = moderngl.ONE, moderngl.ONE
+        drawn_into = self.gpu.context.fbo
         drawn_into.depth_mask = False
         self.light_up(self._motes.program)
-        self._motes.render(vertices=4, instances=MOTES)
+        with adding_light(self.gpu.context):
+            self._motes.render(vertices=4, instances=MOTES)
         drawn_into.depth_mask = True
+
+
+@contextmanager
+def adding_light(context: moderngl.Context) -> Iterator[None]:
+    """Let what is drawn meanwhile be added to what is there."""
+    context.enable(moderngl.BLEND)
+    context.blend_func = moderngl.ONE, moderngl.ONE
+    try:
+        yield
+    finally:
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         context.disable(moderngl.BLEND)
 
 
-def net_triangles(knots: int) -> NDArray[np.int32]:
+def net_triangles(knots: int) -> Triangles:
     """Two triangles for each square of a net of ``knots`` by ``knots``, as (m, 3) indices of its knots, row by row."""
-    knot = np.arange(knots * knots, dtype=np.int32).reshape(knots, knots)
-    a, b, c, d = knot[:-1, :-1], knot[:-1, 1:], knot[1:, 1:], knot[1:, :-1]
-    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    knot = np.arange(knots * knots).reshape(knots, knots)
+    return quads_to_triangles(knot[:-1, :-1], knot[:-1, 1:], knot[1:, 1:], knot[1:, :-1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 from viewer.engine.declarations import choice, slider
 from viewer.engine.params import Parameters
 from viewer.kit import quaternion
+from viewer.kit.fish_pieces import SIDES
 from viewer.kit.rig import Skeleton
 
 GROUP = "Fins"
-SIDES = {"left": 1.0, "right": -1.0}
 FULL_BEND = math.radians(60.0)      # of the body, at which the fins steer as far as they do
 STEERING_SPREAD = 30.0              # degrees that the inner pectoral fin then stands off
 STEERING_BANK = 20.0                # degrees that both then turn about their length, one up and one down
@@ -25,10 +26,10 @@ PELVIC_LAG = 0.8                    # radians of the beat
 
 
 class FinParameters(Parameters):
-    """How the limbs move: the pectoral and the pelvic fins, and the two lobes of the tail."""
+    """How the limbs move: the pectoral and the pelvic fins, and the two lobes of the tail, alike in all of a school."""
 
-    fin_beat_hz: float = slider(1.2, 0.0, 15.0, "Strokes of the pectoral fins each second", unit="Hz",
-                                handy=(0.0, 6.0), group=GROUP)
+    fin_beat_hz: float = slider(1.2, 0.0, 15.0, "Strokes of the pectoral fins each second, for a whole school at "
+                                "once", unit="Hz", handy=(0.0, 6.0), group=GROUP)
     fin_stroke: float = slider(22.0, 0.0, 80.0, "How far a stroke of the pectoral fins goes to either side",
                                unit="degrees", group=GROUP)
     fin_feather: float = slider(18.0, 0.0, 80.0, "How far the pectoral fins turn about their own length in a stroke",
@@ -38,7 +39,8 @@ class FinParameters(Parameters):
         "How the pectoral fins keep time", group=GROUP)
     fin_spread: float = slider(0.0, -40.0, 60.0, "How far all paired fins stand off the body, from where they rest",
                                unit="degrees", group=GROUP)
-    fin_steer: float = slider(1.0, 0.0, 2.0, "How much the pectoral fins spread and bank in a turn", group=GROUP)
+    fin_steer: float = slider(1.0, 0.0, 2.0, "How much the pectoral fins spread and bank in a turn; all of a "
+                              "school do so by `turn`, not by their own", group=GROUP)
     tail_fan: float = slider(8.0, 0.0, 40.0, "How far the lobes of the tail open and close with each beat",
                              unit="degrees", group=GROUP)
     tail_lag: float = slider(14.0, 0.0, 60.0, "How far the lobes of the tail stay behind its stalk", unit="degrees",
@@ -59,8 +61,8 @@ def fin_pose(skeleton: Skeleton, phase: float, turn: float, params: Any, fin_pha
     rest.
     """
     turns = dict.fromkeys(skeleton.names, quaternion.IDENTITY)
+    outward = _outward(skeleton)
     for side in SIDES:
-        outward = _outward(skeleton, side)
         turns |= _pectoral(side, outward.get(f"{side} pectoral", 1.0), turn, params, fin_phase)
         turns |= _pelvic(side, outward.get(f"{side} pelvic", 1.0), params, fin_phase)
     turns |= _tail(phase - 2.0 * math.pi / params.wavelength, params)
@@ -70,12 +72,12 @@ def fin_pose(skeleton: Skeleton, phase: float, turn: float, params: Any, fin_pha
 
 def _pectoral(side: str, outward: float, turn: float, params: Any, phase: float) -> dict[str, quaternion.Numbers]:
     """How a pectoral fin and its tip are turned from rest: it rows out and in, and its blade turns a quarter later."""
-    inner = params.fin_steer * SIDES[side] * max(-1.0, min(1.0, turn / FULL_BEND))
+    inner = -params.fin_steer * SIDES[side] * max(-1.0, min(1.0, turn / FULL_BEND))
     phase += math.pi if side == "right" and params.fin_rhythm == "in_turn" else 0.0
     spread = params.fin_spread + STEERING_SPREAD * max(0.0, inner) + params.fin_stroke * math.sin(phase)
     feather = params.fin_feather * math.cos(phase) + STEERING_BANK * inner
     bent = TIP_SHARE * params.fin_stroke * math.sin(phase - TIP_LAG)
-    mirrored = -SIDES[side]
+    mirrored = SIDES[side]
     return {f"{side} pectoral": _turned((mirrored * feather, outward * spread, 0.0)),
             f"{side} pectoral tip": _turned((mirrored * params.fin_twist, outward * bent, 0.0))}
 
@@ -93,10 +95,12 @@ def _tail(phase: float, params: Any) -> dict[str, quaternion.Numbers]:
     return {"tail upper": _turned((0.0, lag, fan)), "tail lower": _turned((0.0, lag, -fan))}
 
 
-def _outward(skeleton: Skeleton, side: str) -> dict[str, float]:
-    """The sign, by joint, of a turn about its y axis that leads its tip away from the fish's middle plane."""
+@lru_cache(maxsize=16)
+def _outward(skeleton: Skeleton) -> dict[str, float]:
+    """The sign, by joint of a side, of a turn about its y axis that leads its tip away from the fish's middle plane."""
     across = skeleton.world()[:, 2, 2]      # how far each z axis points to the fish's right
-    return {name: math.copysign(1.0, SIDES[side] * across[joint]) for joint, name in enumerate(skeleton.names)}
+    return {name: math.copysign(1.0, -SIDES[side] * across[joint]) for joint, name in enumerate(skeleton.names)
+            if (side := name.split()[0]) in SIDES}
 
 
 def _turned(degrees: tuple[float, float, float]) -> quaternion.Numbers:

@@ -14,6 +14,8 @@ from viewer.engine.declarations import choice, color, integer, slider, toggle
 from viewer.engine.params import Parameters
 from viewer.kit.fish import SPECIES, fish, fish_pieces
 from viewer.kit.fish_body import body_surface
+from viewer.kit.fish_pieces import Piece
+from viewer.kit.fish_species import Part, Species
 
 SKIN, TEACHING = "Skin", "Teaching"
 COLOURINGS = {
@@ -32,10 +34,10 @@ class FishLookParameters(Parameters):
     species: str = choice("clownfish", {
         "clownfish": "Orange with white bars", "tuna": "A silver sprinter with yellow finlets",
         "koi": "White with clouds of red and black", "eel": "A moray in a net of pale lines"},
-        "Which fish", rebuild=True, group=SKIN)
+        "Which fish; in a mixed school there are all", rebuild=True, group=SKIN)
     detail: str = choice("by_size", DETAILS, "How finely the fish is cut into triangles; many are never finer than a "
                          "picture can bear", group=SKIN)
-    mixed: bool = toggle(False, "A school of all four species", rebuild=True, group=SKIN)
+    mixed: bool = toggle(False, "A school of all four species; alone, a fish is of one", rebuild=True, group=SKIN)
     pattern_seed: int = integer(0, 0, 999, "Another fish of the same kind", group=SKIN)
     scale_size: float = slider(1.0, 0.4, 3.0, "How large scales are, times the species' own", group=SKIN)
     iridescence: float = slider(0.6, 0.0, 1.0, "How much thin layers in the skin colour what it mirrors", group=SKIN)
@@ -83,8 +85,9 @@ def species_glsl(species: str) -> str:
 
 def drawn_glsl(params: Any, fine: bool) -> str:
     """The include ``generated/drawn.glsl``: what is not asked for, and what is too far away, is not even compiled."""
-    names = "".join(f"const int {name.upper()} = {number};\n" for number, name in enumerate(COLOURINGS))
-    return (f"{names}const int COLOURING = {params.colouring.upper()};\n"
+    names = {part.name: part.value for part in Part} | {name.upper(): number for number, name in enumerate(COLOURINGS)}
+    numbers = "".join(f"const int {name} = {number};\n" for name, number in names.items())
+    return (f"{numbers}const int COLOURING = {params.colouring.upper()};\n"
             f"const bool FINE = {str(fine).lower()};\n")
 
 
@@ -110,14 +113,18 @@ def girths(species: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def rays(species: str, detail: int) -> NDArray[np.float32]:
-    """How many rays the fin of each vertex has, (n,); 0 for body and eyes."""
-    kind, counts = SPECIES[species], []
-    for name, piece in fish_pieces(species, detail).items():
-        number = name.split()[-1]
-        fins = [kind.median_fins[int(number)]] if number.isdigit() else [
-            fin for fin in kind.paired_fins if fin.part == piece.parts[0]]
-        counts.append(np.full(len(piece.positions), fins[0].rays if fins else 0, np.float32))
-    return np.concatenate(counts)
+    """How many rays the fin of each vertex has, (n,); 0 for body, barbels and eyes."""
+    pieces = fish_pieces(species, detail)
+    counts = [_rays_of(SPECIES[species], name, piece) for name, piece in pieces.items()]
+    return np.repeat(np.array(counts, np.float32), [len(piece.positions) for piece in pieces.values()])
+
+
+def _rays_of(kind: Species, name: str, piece: Piece) -> int:
+    part, number = piece.parts[0], name.split()[-1]
+    if part in (Part.BODY, Part.EYE):
+        return 0
+    return (kind.median_fins[int(number)] if number.isdigit()
+            else next(fin for fin in kind.paired_fins if fin.part == part)).rays
 
 
 def _vector(*numbers: float) -> str:

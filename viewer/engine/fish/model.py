@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import moderngl
@@ -13,9 +14,8 @@ from viewer.engine.fish.swimming import Swimming
 from viewer.engine.gpu import Gpu
 from viewer.engine.program import Program, VertexArray
 from viewer.engine.scene import Geometry
-from viewer.engine.skin import BonePalette, skin_attributes
-from viewer.kit.fish import FishMesh, fish, fish_rig
-from viewer.kit.fish_species import Part
+from viewer.engine.skin import METHODS, BonePalette, skin_attributes
+from viewer.kit.fish import FishMesh, fish, fish_pieces, fish_rig
 from viewer.kit.mesh import vertex_areas
 
 BONES_UNIT = 10
@@ -31,10 +31,15 @@ class FishModel:
     def __init__(self, gpu: Gpu, params: Any, species: str) -> None:
         self.gpu, self.params, self.species = gpu, params, species
         self._rig = fish_rig(species, 0)
-        self._palette = BonePalette(gpu, len(self._rig.bones), params.fin_method)
+        self._palettes = {method: BonePalette(gpu, len(self._rig.bones), method) for method in METHODS}
         self._programs: dict[bool, Program] = {}
         self._content: dict[int, tuple[list[tuple[Any, ...]], moderngl.Buffer]] = {}
         self._arrays: dict[tuple[int, bool], VertexArray] = {}
+
+    @property
+    def _palette(self) -> BonePalette:
+        """The bones, for the way of blending that is now asked for."""
+        return self._palettes[self.params.fin_method]
 
     def prepare(self, swimming: Swimming) -> None:
         """Let the fins move as the beat has them now."""
@@ -51,7 +56,7 @@ class FishModel:
         """A program whose vertices include ``fish/moved.glsl``."""
         return self.gpu.program(f"fish/{name}.vert", f"fish/{name}.frag", generated={
             "generated/drawn.glsl": lambda: look.drawn_glsl(self.params, fine),
-            "generated/skinning.glsl": self._blending, **(generated or {})})
+            "generated/skinning.glsl": lambda: self._palette.constants(), **(generated or {})})
 
     def draw(self, detail: int, fine: bool, instances: int) -> None:
         """Draw the first ``instances`` fish."""
@@ -61,12 +66,8 @@ class FishModel:
         self._palette.bind(program, BONES_UNIT)
         # A far fish's shadow is that of its body, the first of its pieces.
         body_alone = self.gpu.casting_shadows and not fine
-        vertices = 3 * self._body_triangles(detail) if body_alone else -1
+        vertices = 3 * body_triangles(self.species, detail) if body_alone else -1
         self._array(detail, fine).render(vertices=vertices, instances=instances)
-
-    def _body_triangles(self, detail: int) -> int:
-        mesh = fish(self.species, detail)
-        return int((mesh.parts[mesh.triangles[:, 0]] == Part.BODY).sum())
 
     def draw_needles(self, needles: VertexArray, count: int) -> None:
         """Draw what ``needles`` made, on the first fish."""
@@ -94,10 +95,6 @@ class FishModel:
         content = [(self.gpu.buffer(corners, label="needle"), "3f", "in_corner"),
                    *((buffer, f"{layout}/i", *names) for buffer, layout, *names in self._attributes(mesh, roots))]
         return self.gpu.vertex_array(self.made_program("needle"), content)
-
-    def _blending(self) -> str:
-        self._palette.method = self.params.fin_method
-        return self._palette.constants()
 
     def _array(self, detail: int, fine: bool) -> VertexArray:
         key = detail, fine
@@ -128,5 +125,11 @@ def detail_of(params: Any, pixels: float) -> int:
     """The level of detail for the fish that ``params`` ask for, of which the nearest is ``pixels`` long."""
     worth = max(level for level, least in enumerate(WORTH) if pixels >= least)
     chosen = list(look.DETAILS).index(params.detail) - 1
-    return max((level for level in range((worth if chosen < 0 else chosen) + 1)
-                if params.school * len(fish(params.species, level).positions) <= MOST_VERTICES), default=0)
+    return next((level for level in range(worth if chosen < 0 else chosen, 0, -1)
+                 if params.school * len(fish(params.species, level).positions) <= MOST_VERTICES), 0)
+
+
+@lru_cache
+def body_triangles(species: str, detail: int) -> int:
+    """How many triangles the body has, which is the first of a fish's pieces."""
+    return len(fish_pieces(species, detail)["body"].triangles)

@@ -40,9 +40,11 @@ class Spine:
         """Draw the line now, earlier ones and the envelope over everything, in ``Scene.draw_over``."""
         context = self.gpu.context
         self._line.program["u_width"] = WIDTH * context.fbo.height / 360.0
-        context.enable_only(moderngl.BLEND)
+        context.disable(moderngl.DEPTH_TEST)
+        context.enable(moderngl.BLEND)
         self._line.render(vertices=2 * PLACES, instances=3 + GHOSTS)
-        context.enable_only(moderngl.DEPTH_TEST)
+        context.disable(moderngl.BLEND)
+        context.enable(moderngl.DEPTH_TEST)
 
     def beat(self, swimming: Swimming) -> NDArray[np.float32]:
         """Where the shader puts the line at all moments of a beat, (MOMENTS, PLACES, 3), from nose to tail."""
