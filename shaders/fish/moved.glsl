@@ -6,17 +6,13 @@
 #include "fish/pose.glsl"
 #include "generated/drawn.glsl"
 
-// The bent fish as it is told from afar: with a rule of two places along the body, and normals that only turn.
+// The bent fish as it is told from afar, where nobody sees a body stretch by a hundredth: its middle line swings
+// sideways and is bent along chords of the turn's arc, without an integral, and normals only turn.
 void swim_far_away(inout vec3 position, inout vec3 normal, float phase, float turn) {
-    float s = clamp(MIDDLE - position.x, 0.0, 1.0), yaw = u_swim_yaw * sin(phase);
-    vec2 way = vec2(0.0);
-    for (int number = 0; number < 2; number++) {
-        float between = mix(MIDDLE, s, number == 0 ? 0.2113249 : 0.7886751);
-        way += 0.5 * forward_at(between, u_swim_amplitude * wave(between, phase).y, turn);
-    }
+    float s = clamp(MIDDLE - position.x, 0.0, 1.0), yaw = u_swim_yaw * sin(phase), arc = turn * (MIDDLE - s);
     vec3 here = wave(s, phase);
-    vec2 start = vec2(0.0, u_swim_amplitude * wave(MIDDLE, phase).x);
-    BodyPlace body = BodyPlace(start + (MIDDLE - s) * way, forward_at(s, u_swim_amplitude * here.y, turn), 0.0,
+    vec2 chord = rotated(vec2(MIDDLE - s, u_swim_amplitude * here.x), -0.5 * arc);
+    BodyPlace body = BodyPlace(chord, forward_at(s, u_swim_amplitude * here.y, turn), 0.0,
                                u_swim_roll * sin(phase) + u_swim_twist * here.x, 0.0);
     vec2 middle = rotated(body.place, -yaw) + vec2(0.0, u_swim_sway * sin(phase));
     position = vec3(middle.x, 0.0, middle.y) + out_of_body(position - vec3(MIDDLE - s, 0.0, 0.0), body, yaw);
