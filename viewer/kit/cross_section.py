@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viewer.kit.limb import Limb
+from viewer.kit.limb import Limb, size_of
 from viewer.kit.mesh import Triangles, Vertices
 from viewer.kit.quaternion import Numbers
 
@@ -56,7 +56,7 @@ def flattened(limb: Limb, points: Numbers, along: float, upper: Numbers | None =
     ``upper`` (4, 4) has moved the limb as a whole since it was bound, and with it the axis and its two directions.
     """
     moved = np.eye(4) if upper is None else upper
-    size = np.cbrt(abs(np.linalg.det(moved[:3, :3]))) or 1.0
+    size = size_of(moved)
     origin = moved[:3, :3] @ (limb.start + along * (limb.end - limb.start)) + moved[:3, 3]
     frame = np.stack([moved[:3, :3] @ direction for direction in limb.across]) / size
     return np.asarray((points - origin) @ frame.T / (size * limb.length))

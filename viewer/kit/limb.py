@@ -109,6 +109,11 @@ def distances(points: Numbers, origin: Numbers, axis: Numbers) -> Numbers:
     return np.asarray(np.linalg.norm(away - np.outer(away @ axis, axis), axis=1))
 
 
+def size_of(matrix: Numbers) -> float:
+    """How many times larger a matrix (4, 4) makes things; 1 where it makes nothing of them."""
+    return float(np.cbrt(abs(np.linalg.det(matrix[:3, :3])))) or 1.0
+
+
 def limb_at(mesh: RiggedMesh, bone: int) -> Limb | None:
     """The limb that the palette entry ``bone`` ends, or None where no bone is before it.
 

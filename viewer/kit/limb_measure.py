@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from viewer.kit.limb import WHOLE, Limb, distances
+from viewer.kit.cross_section import flattened
+from viewer.kit.limb import WHOLE, Limb, distances, size_of
 from viewer.kit.mesh import Triangles, Vertices
 from viewer.kit.mesh_measure import area, volume
 from viewer.kit.quaternion import Numbers
@@ -60,16 +61,16 @@ class LimbGauge:
         ``upper`` (4, 4) has moved the limb as a whole: it takes the axis along, and the size it gives does not count.
         """
         limb = self.limb
-        size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
+        size = size_of(upper)
         axis = upper[:3, :3] @ limb.axis
         origin = upper[:3, :3] @ limb.start + upper[:3, 3]
         now = distances(np.asarray(posed, np.float64), origin, axis / np.linalg.norm(axis))
         return np.asarray(now / size / limb.radius[vertices])
 
     def numbers(self, posed: Vertices, upper: Numbers) -> LimbNumbers:
-        """All three, for vertices (n, 3) of the whole mesh as they are now."""
+        """All of them, for vertices (n, 3) of the whole mesh as they are now."""
         ratios = self.radius_ratios(posed[self.limb.measured], upper, self.limb.measured)
-        size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
+        size = size_of(upper)
         (volume_before, area_before), (volume_now, area_now) = self._bound_extent, self._extent(posed)
         return LimbNumbers(
             float(ratios.min()) if len(ratios) else np.nan, self._thinnest(posed, upper, ratios),
@@ -80,7 +81,7 @@ class LimbGauge:
         first, second = self._edges.T
         if not len(first):
             return float(ratios.min()) if len(ratios) else np.nan
-        now, bound = self._across(posed, upper), self._across(self.limb.mesh.positions.astype(np.float64), np.eye(4))
+        now, bound = flattened(self.limb, posed, 0.0, upper), self._bound_across
         way = now[second] - now[first]
         squared = np.einsum("ij,ij->i", way, way)
         part = np.clip(np.divide(-np.einsum("ij,ij->i", now[first], way), squared, out=np.zeros(len(way)),
@@ -88,13 +89,9 @@ class LimbGauge:
         before = np.linalg.norm(bound[first] + part * (bound[second] - bound[first]), axis=1)
         return float((np.linalg.norm(now[first] + part * way, axis=1) / np.maximum(before, 1e-30)).min())
 
-    def _across(self, places: Vertices, upper: Numbers) -> Numbers:
-        """``places`` (n, 3) as seen along the axis that ``upper`` (4, 4) has moved, in the limb's own size."""
-        limb = self.limb
-        size = float(np.cbrt(abs(np.linalg.det(upper[:3, :3])))) or 1.0
-        origin = upper[:3, :3] @ limb.start + upper[:3, 3]
-        frame = np.stack([upper[:3, :3] @ direction for direction in limb.across]) / size
-        return np.asarray((np.asarray(places, np.float64) - origin) @ frame.T / size)
+    @cached_property
+    def _bound_across(self) -> Numbers:
+        return flattened(self.limb, self.limb.mesh.positions.astype(np.float64), 0.0)
 
     @cached_property
     def _edges(self) -> NDArray[np.intp]:
