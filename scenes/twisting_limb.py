@@ -25,7 +25,6 @@ from viewer import (
     Orbit,
     Parameters,
     Scene,
-    Stand,
     Studio,
     choice,
     file,
@@ -42,16 +41,10 @@ from viewer.kit.bone_model import bone_model
 from viewer.kit.bone_pose import bone_named, clip_named, read_pose, written_name, written_pose
 from viewer.kit.gltf import SUFFIXES, Clip
 from viewer.kit.limb import Limb, limb_at, most_blended_bone, with_falloff
+from viewer.kit.limb_layout import GROUND, LimbLayout, Stand, View
 from viewer.kit.limb_source import model_in
 
-GROUND = -1.06
-TALLEST, WIDEST = 2.16, 2.5             # how large a model stands in the studio
-LEAST_SEEN = 0.6                        # of a long model's length, for which there is room however it is turned
-HEADS = 0.95                            # how high in the picture limbs may reach
 LETTERS_HIGH, SMALLEST_LETTERS = 36.0, 12.0     # a picture in standard letters, and these at least in pixels
-RAISED = 0.4                            # of the height that a low model leaves free, how much is below it
-APART = 0.88                            # from one limb to the next in a square picture; in wider ones more
-FARTHEST_APART = 1.6
 COMPARED = ("linear", "linear", "dual_quaternion")
 ALONE = len(COMPARED)                   # the column of the limb that stands alone
 EXTRA_BONES = 3                         # in the comparison, where none are asked for
@@ -149,7 +142,7 @@ class TwistingLimb(Scene):
                 skin.pose(local, self.twist(), twist_bones)
             place = self.params.slice if self.params.show_slice else None
             self.captions.show([skin for skin, _ in self.shown()], self.aspect,
-                               self.apart() / self.half_height(), place, self.letters())
+                               self.seen().apart / self.seen().half_height, place, self.letters())
             self.tell_shaders()
             self.followed = wanted
 
@@ -199,11 +192,10 @@ class TwistingLimb(Scene):
 
     def tell_shaders(self) -> None:
         """Say where the model stands, how large, and what its skin shows."""
-        middle, scale = self.standing()
-        p, weighed = self.params, self.weighed_bone()
+        p, weighed, layout = self.params, self.weighed_bone(), self.layout()
         checkered = p.skin == "checkered" or (p.skin == "own" and p.model is None)
-        self.shared.tell("u_model_middle", middle)
-        self.shared.tell("u_model_scale", scale)
+        self.shared.tell("u_model_middle", layout.origin)
+        self.shared.tell("u_model_scale", layout.scale)
         self.shared.tell("u_weighed_bone", weighed)
         shown = CHECKERED if checkered else PLAIN if p.skin == "plain" else OWN
         self.shared.tell("u_skin_shown", WEIGHTS if weighed >= 0 else shown)
@@ -211,55 +203,27 @@ class TwistingLimb(Scene):
         self.shared.tell("u_checks", TEXTURE_CHECKS if p.model else 1.0)
         self.shared.tell("u_stripe_every", CHECKS_AROUND)
 
-    def apart(self) -> float:
-        """How far one limb stands from the next."""
-        return min(FARTHEST_APART, APART * max(1.0, self.aspect))
+    def seen(self) -> View:
+        """How the camera starts, in this picture."""
+        return View(self.camera.yaw, self.camera.distance, self.camera.field_of_view, self.aspect)
 
-    def standing(self) -> tuple[tuple[float, float, float], float]:
-        """What of the model stands in the middle of the studio, and how many times larger: on the floor, as at rest."""
-        low, high = self.shared.extent
-        width, height, depth = (float(length) for length in high - low)
-        room = 0.95 * self.apart() if len(self.shown()) > 1 else WIDEST
-        tall = min(TALLEST, (HEADS - self.lowest()) * self.half_height()) if self.limb else TALLEST
-        start = math.radians(self.camera.yaw)
-        seen = abs(width * math.cos(start)) + abs(depth * math.sin(start))
-        across = max(seen, LEAST_SEEN * math.hypot(width, depth), 1e-9)
-        scale = min(tall / max(height, 1e-9), room / across)
-        x, _, z = (float(place) for place in 0.5 * (low + high))
-        return (x, float(low[1]) - GROUND / scale, z), scale
+    def layout(self) -> LimbLayout:
+        """How the limbs that are shown are laid out."""
+        return LimbLayout(self.seen(), len(self.shown()), *self.shared.extent, self.captions.top)
 
     def stands(self) -> list[Stand]:
-        """Where each limb stands: beside the next as the camera sees it, and turned so that all are seen alike."""
-        count, right, found = len(self.shown()), self.view[:3, 0], []
-        for column in range(count):
-            aside = self.apart() * (column - 0.5 * (count - 1)) * right
-            seen = self.eye - aside
-            turned = math.atan2(seen[0], seen[2]) - math.atan2(self.eye[0], self.eye[2])
-            found.append(Stand((float(aside[0]), float(aside[1]), float(aside[2])), turned))
-        return found
+        """Where each limb stands, for the camera as it is now."""
+        return self.layout().stands(self.eye, self.view[:3, 0])
 
     def turns_with_camera(self) -> bool:
         return len(self.shown()) > 1
 
     def middle(self) -> tuple[float, float]:
-        if not self.limb:
-            return 0.0, 0.0
-        low, high = self.shared.extent
-        spare = HEADS - self.lowest() - self.standing()[1] * float(high[1] - low[1]) / self.half_height()
-        return 0.0, self.lowest() + RAISED * spare - GROUND / self.half_height()
-
-    def half_height(self) -> float:
-        """How much of the world the picture shows from its middle up, where the camera starts."""
-        angle = math.radians(0.5 * self.camera.field_of_view)
-        return self.camera.distance * math.tan(angle) / min(1.0, self.aspect)
+        return (0.0, self.layout().raised) if self.limb else (0.0, 0.0)
 
     def letters(self) -> float:
         """The height of standard letters, in half heights of the picture."""
         return 2.0 * max(SMALLEST_LETTERS / self.gpu.context.fbo.height, 1.0 / LETTERS_HIGH)
-
-    def lowest(self) -> float:
-        """How low in the picture limbs may stand: above their captions."""
-        return self.captions.top + 0.07
 
     def draw(self) -> None:
         for (skin, _), stand in zip(self.shown(), self.stands(), strict=True):
@@ -268,15 +232,10 @@ class TwistingLimb(Scene):
     def draw_over(self) -> None:
         if self.params.show_bones:
             for (skin, extra), stand in zip(self.shown(), self.stands(), strict=True):
-                places = stand.placed(self.in_studio(skin.joint_places()))
+                places = stand.placed(self.layout().in_studio(skin.joint_places()))
                 self.bones.show(bone_model(self.mesh, places, self.bone, self.limb, extra))
                 self.bones.draw(through=True)
         self.captions.draw()
-
-    def in_studio(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Places (n, 3) of the model's own space in the world, around the origin."""
-        middle, scale = self.standing()
-        return np.asarray(scale * (places - np.array(middle)))
 
     def labels(self) -> Sequence[Label]:
         return self.captions.labels()
@@ -297,7 +256,7 @@ class TwistingLimb(Scene):
     def click(self, click: Click) -> Mapping[str, object]:
         nearest, chosen = NEAR_JOINT, ""
         for (skin, _), stand in zip(self.shown(), self.stands(), strict=True):
-            away = stand.placed(self.in_studio(skin.joint_places())) - click.origin
+            away = stand.placed(self.layout().in_studio(skin.joint_places())) - click.origin
             depth = away @ click.direction
             beside = np.linalg.norm(np.cross(away, click.direction), axis=1) / np.maximum(depth, 1e-9)
             beside[depth <= 0.0] = np.inf       # behind the eye
@@ -310,7 +269,7 @@ class TwistingLimb(Scene):
             return None
         bone, (skin, _) = self.bone, self.shown()[len(self.shown()) // 2]
         matrix = limb_pose.upright(skin.matrices[bone] @ self.mesh.bound_frames[bone])
-        matrix[:3, 3] = self.in_studio(matrix[None, :3, 3])[0]
+        matrix[:3, 3] = self.layout().in_studio(matrix[None, :3, 3])[0]
         return Handle(matrix, f"turn {self.names[bone]}")
 
     def drag_handle(self, handle: Handle) -> Mapping[str, object]:

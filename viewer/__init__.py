@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from viewer.engine.isosurface import Isosurface
     from viewer.engine.limb_captions import LimbCaptions
     from viewer.engine.limb_report import limb_comparison, limb_curves
-    from viewer.engine.limb_skin import LimbModel, LimbSkin, Stand
+    from viewer.engine.limb_skin import LimbModel, LimbSkin
     from viewer.engine.params import Parameters
     from viewer.engine.particles.draw_timer import DrawTimer
     from viewer.engine.particles.inspector import InspectParameters, ParticleInspector
@@ -105,7 +105,6 @@ __all__ = [
     "Spine",
     "Sprites",
     "Stage",
-    "Stand",
     "Strands",
     "Studio",
     "SwimParameters",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +16,7 @@ from viewer.engine.program import Program, VertexArray
 from viewer.engine.skin import BonePalette, skin_attributes
 from viewer.engine.skin_pass import SkinPass, texture_of
 from viewer.kit.limb import Limb
+from viewer.kit.limb_layout import Stand
 from viewer.kit.limb_measure import LimbGauge, LimbNumbers
 from viewer.kit.quaternion import Numbers, nearest_rotation, swing_twist
 from viewer.kit.skinning import RIGID_WITHIN, linear_blend, rigid_parts
@@ -31,20 +31,6 @@ MOST_SWING = math.radians(8.0)      # of a limb that still counts as straight
 LARGE = 100_000         # vertices, from which on they are posed once, not whenever they are drawn
 BONES_UNIT, TEXTURE_UNIT = 0, 1
 Rows = NDArray[np.float32]
-
-
-@dataclass(frozen=True)
-class Stand:
-    """Where a limb stands: ``aside`` in the world, and ``turned`` around the vertical, in radians."""
-
-    aside: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    turned: float = 0.0
-
-    def placed(self, places: Numbers) -> Numbers:
-        """Places (n, 3) around the origin, turned and moved aside."""
-        cosine, sine = math.cos(self.turned), math.sin(self.turned)
-        turn = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
-        return np.asarray(places @ turn.T + self.aside)
 
 
 class LimbModel:
