@@ -65,7 +65,7 @@ class Spine:
             "body_length_ratio": found.body_length_ratio, **runs, "head_amplitude": found.head_amplitude,
             "tail_amplitude": found.tail_amplitude, "strouhal": found.strouhal,
             "amplitude_along_body": Curve("along", along, {"amplitude": found.amplitude},
-                                          x_label="from nose to tail (body lengths)",
-                                          y_label="swing to either side (body lengths)"),
-            "midline": Curve("along", along, moments, x_label="from nose to tail (body lengths)",
-                             y_label="to the right (body lengths)")}
+                                          x_label="from nose to tail",
+                                          y_label="swing (body lengths)"),
+            "midline": Curve("along", along, moments, x_label="from nose to tail",
+                             y_label="to the right")}
